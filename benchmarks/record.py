@@ -153,8 +153,8 @@ def law_words(record, name):
     whole = record[name]["kinds"]["all"]
     return [f"{record[name]['converged']} of {whole['runs']} runs were called converged",
             f"{whole['over']} took more than 20 s, {whole['untold']} had no truth good enough, "
-            f"{whole['false alarm']} on stated meshes were suspect and right to 1e-3",
-            f"with the looks off {record[name]['wrong without the looks']} are wrong"]
+            f"{whole['false alarm']} on given meshes were suspect and right to 1e-3",
+            f"with `looks` off, {record[name]['wrong without the looks']} are wrong"]
 
 
 def reported(folder):

@@ -56,8 +56,18 @@ std::string laid_out(std::string_view page, const Terminal& terminal)
 
 }   // namespace
 
-int schema_command(bool markdown)
+int schema_command(bool markdown, const std::string& type)
 {
+    if (!type.empty()) {
+        const std::string keys = schema_markdown(type), proposal = nearest(type, schema_types());
+        if (keys.empty())
+            throw failure(exit_usage,
+                          "there is no type '" + type + "'" +
+                              (proposal.empty() ? ", types are joint.revolute, load.force and so on"
+                                                : "; did you mean '" + proposal + "'?"));
+        print(keys);
+        return exit_ok;
+    }
     print(with_end(markdown ? schema_markdown() : schema_json()));
     return exit_ok;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arguments.h"
 
-#include <functional>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -45,22 +44,22 @@ void add_units(CLI::App& command, std::vector<std::string>& units, const std::st
 
 void add_force(CLI::App& command, bool& force)
 {
-    command.add_flag("--force", force, "replace files that livens did not write, too; never inputs");
+    command.add_flag("--force", force, "also replace files that livens did not write; never inputs");
 }
 
 void add_colour(CLI::App& command, Arguments& a)
 {
     add_choice(command, "--color", a.colour, {"auto", "always", "never"},
-               "colours and signs; auto: on terminals");
+               "colours and non-ASCII signs; auto: on terminals");
 }
 
 void add_common(CLI::App& command, Arguments& a)
 {
     command.add_flag("--json", a.common.json, "print one JSON object, also on failure");
     command.add_flag("-q,--quiet", a.common.quiet, "no progress, no summary");
-    command.add_flag("-v,--verbose", a.common.verbose, "more figures; what is done and how long it takes");
+    command.add_flag("-v,--verbose", a.common.verbose, "more figures, and the time of each step");
     add_choice(command, "--diagnostics", a.layout, {"human", "json", "gnu"},
-               "layout of errors on standard error");
+               "format of diagnostics on standard error");
 }
 
 /// Of what reads scenarios.
@@ -110,7 +109,7 @@ void add_scenario_commands(CLI::App& app, Arguments& a)
     const auto name = arguments_of<std::string>(), file = arguments_of<std::string>();
     CLI::App& init = add_command(app, a, "init", "Write a small scenario to start from",
                                  [name](const Common& common) { return init_command(*name, common); });
-    add_file(init, "NAME", *name, "of the scenario; default: pendulum")->type_name("NAME");
+    add_file(init, "NAME", *name, "name of the scenario; default: pendulum")->type_name("NAME");
     add_common(init, a);
     CLI::App& check = add_command(app, a, "check", "Check a scenario without solving it",
                                   [file](const Common& common) { return check_command(*file, common); });
@@ -122,21 +121,24 @@ void add_scenario_commands(CLI::App& app, Arguments& a)
 void add_solve_command(CLI::App& app, Arguments& a)
 {
     const auto given = arguments_of<SolveArguments>();
-    CLI::App& solve = add_command(app, a, "solve", "Solve scenarios and write their motions",
+    CLI::App& solve = add_command(app, a, "solve", "Solve scenarios and write result files",
                                   [given](const Common& common) { return solve_command(*given, common); });
     solve.add_option("FILE", given->scenarios, "scenario (TOML), or several")
         ->required()
         ->type_name("FILE.toml");
     add_file(solve, "-o,--output", given->output,
-             "result file, or a folder for several; default: the scenario's stem with .nc, here")
+             "result file, or a folder for several scenarios; default: name of the scenario with .nc, in the "
+             "current folder")
         ->type_name("RUN.nc");
-    add_file(solve, "--csv", given->csv, "write the samples as CSV too")->type_name("FILE.csv");
+    add_file(solve, "--csv", given->csv, "also write samples as CSV")->type_name("FILE.csv");
     add_force(solve, given->force);
-    solve.add_option("-j,--jobs", given->jobs, "scenarios solved at a time; default: one per processor")
+    solve
+        .add_option("-j,--jobs", given->jobs,
+                    "number of scenarios solved concurrently; default: one per processor")
         ->check(CLI::Range(1, 1024))
         ->type_name("N");
     add_choice(solve, "--simd", given->simd, {"sse2", "avx2", "avx512"},
-               "instructions to solve with; default: avx2 where the processor has it");
+               "instruction set to solve with; default: avx2 if the processor has it, else sse2");
     add_set(solve, a);
     add_common(solve, a);
 }
@@ -145,13 +147,13 @@ void add_mass_command(CLI::App& app, Arguments& a)
 {
     const auto given = arguments_of<MassArguments>();
     CLI::App& mass =
-        add_command(app, a, "mass", "Mass, centre and inertia of a mesh, or of a scenario's bodies",
+        add_command(app, a, "mass", "Mass, centre of mass and inertia of a mesh or of a scenario's bodies",
                     [given](const Common& common) { return mass_command(*given, common); });
     mass.add_option("FILE", given->file, "mesh (STL, OBJ, PLY, MSH) or scenario (TOML)")
         ->required()
         ->type_name("FILE");
-    mass.add_option("--unit", given->unit, "of the mesh's numbers; default: m")->type_name("UNIT");
-    mass.add_option("--density", given->density, "of the mesh, kg/m^3; default: 1")->type_name("D");
+    mass.add_option("--unit", given->unit, "length unit of the mesh file; default: m")->type_name("UNIT");
+    mass.add_option("--density", given->density, "density of the mesh, kg/m^3; default: 1")->type_name("D");
     mass.add_flag("--turn", given->turn, "flip faces of the mesh that point inwards");
     add_set(mass, a);
     add_common(mass, a);
@@ -161,7 +163,7 @@ void add_rest_commands(CLI::App& app, Arguments& a)
 {
     const auto file = arguments_of<std::string>();
     CLI::App& equilibrium =
-        add_command(app, a, "equilibrium", "Find the static equilibrium, and whether it is stable",
+        add_command(app, a, "equilibrium", "Find the static equilibrium and its stability",
                     [file](const Common& common) { return equilibrium_command(*file, common); });
     equilibrium.add_option("FILE", *file, "scenario (TOML)")->required()->type_name("FILE.toml");
     add_set(equilibrium, a);
@@ -172,15 +174,17 @@ void add_rest_commands(CLI::App& app, Arguments& a)
                     [given](const Common& common) { return modes_command(*given, common); });
     modes.add_option("FILE", given->scenario, "scenario (TOML)")->required()->type_name("FILE.toml");
     add_choice(modes, "--at", given->at, {"equilibrium", "start"},
-               "where; default: the equilibrium reached from the start");
+               "state to linearise about; default: the equilibrium found from the start");
     modes
         .add_option("--input", given->inputs,
-                    "of the state matrices: a force on JOINT.angle, JOINT.displacement or BODY.x")
+                    "input of the state matrices: a force or torque along JOINT.angle, JOINT.displacement or "
+                    "BODY.x; may be repeated")
         ->allow_extra_args(false)
         ->type_name("NAME");
     modes
         .add_option("--output", given->outputs,
-                    "of the state matrices: likewise, as a position; with _rate its rate")
+                    "output of the state matrices: a position named like an input, or with _rate its rate; "
+                    "may be repeated")
         ->allow_extra_args(false)
         ->type_name("NAME");
     add_set(modes, a);
@@ -190,25 +194,29 @@ void add_rest_commands(CLI::App& app, Arguments& a)
 void add_run_commands(CLI::App& app, Arguments& a)
 {
     const auto run = arguments_of<std::string>();
-    CLI::App& info = add_command(app, a, "info", "Show what a result file contains",
-                                 [run](const Common& common) { return info_command(*run, common); });
+    CLI::App& info =
+        add_command(app, a, "info", "Show the contents of a result file and the quality of the run",
+                    [run](const Common& common) { return info_command(*run, common); });
     info.add_option("RUN", *run, "result file")->required()->type_name("RUN.nc");
     add_common(info, a);
     const auto given = arguments_of<SampleArguments>();
-    CLI::App& sample = add_command(app, a, "sample", "A body, a joint or a sensor of a run at given instants",
-                                   [given](const Common& common) { return sample_command(*given, common); });
+    CLI::App& sample =
+        add_command(app, a, "sample", "Print a body, a joint or a sensor of a run at given times",
+                    [given](const Common& common) { return sample_command(*given, common); });
     sample.add_option("RUN", given->run, "result file")->required()->type_name("RUN.nc");
-    auto* body = sample.add_option("--body", given->body, "pose, velocity and momentum of this body")
+    auto* body = sample.add_option("--body", given->body, "print pose, velocity and momentum of this body")
                      ->type_name("BODY");
-    auto* joint = sample.add_option("--joint", given->joint, "reactions of this joint")->type_name("JOINT");
+    auto* joint = sample.add_option("--joint", given->joint, "print reactions and coordinates of this joint")
+                      ->type_name("JOINT");
     joint->excludes(body);
-    sample.add_option("--sensor", given->sensor, "what this sensor reads")
+    sample.add_option("--sensor", given->sensor, "print readings of this sensor")
         ->type_name("SENSOR")
         ->excludes(body)
         ->excludes(joint);
-    sample.add_option("--at", given->at, "instant in seconds; may be repeated")->required()->type_name("T");
+    sample.add_option("--at", given->at, "time in seconds; may be repeated")->required()->type_name("T");
     sample.add_flag("--exact", given->exact,
-                    "between element ends solve a shortened element: full order anywhere");
+                    "between element ends, solve a shortened element instead of evaluating the polynomial: "
+                    "full order at any time");
     sample.add_flag("--csv", given->csv, "print CSV");
     add_units(sample, given->units, "text and CSV");
     add_common(sample, a);
@@ -218,13 +226,13 @@ void add_peaks_command(CLI::App& app, Arguments& a)
 {
     const auto given = arguments_of<PeaksArguments>();
     CLI::App& peaks = add_command(
-        app, a, "peaks", "Largest and least values of a run, and when",
+        app, a, "peaks", "Extreme values of a run and their times",
         [given](const Common& common) { return with_runs([&] { return peaks_command(*given, common); }); });
     peaks.add_option("RUN", given->run, "result file")->required()->type_name("RUN.nc");
     peaks
         .add_option("NAME", given->names,
-                    "as \"pivot.force\" (of vectors the magnitude), \"rod.position.z\", \"energy\"; default: "
-                    "all of joints, loads and sensors, and energies")
+                    "quantity, such as \"pivot.force\" (magnitude of a vector), \"rod.position.z\" or "
+                    "\"energy\"; default: all quantities of joints, loads and sensors, and energies")
         ->type_name("NAME");
     peaks.add_flag("--csv", given->csv, "print CSV");
     add_units(peaks, given->units, "values");
@@ -264,7 +272,7 @@ void add_export_commands(CLI::App& app, Arguments& a)
 {
     const auto given = arguments_of<ExportArguments>();
     CLI::App& exports = add_command(
-        app, a, "export", "Write a run for other programs, in one format or more",
+        app, a, "export", "Convert a run to one or more formats of other programs",
         [given](const Common& common) { return with_runs([&] { return export_command(*given, common); }); });
     exports.add_option("RUN", given->run, "result file")->required()->type_name("RUN.nc");
     exports
@@ -277,10 +285,8 @@ void add_export_commands(CLI::App& app, Arguments& a)
         add_file(exports, std::string("--") + format.word, given->files[i++], format.what)
             ->type_name(std::string("FILE") + format.extension);
     const auto words = words_of(Instants{});
-    add_choice(
-        exports, "--at", given->at, {words.begin(), words.end()},
-        "instants of CSV: smooth curves, the output times, element ends; default: output times where the "
-        "scenario lists them, else smooth curves");
+    add_choice(exports, "--at", given->at, {words.begin(), words.end()},
+               "times of CSV rows; default: output times if the scenario lists them, else dense");
     add_units(exports, given->units, "CSV");
     add_picture(exports, *given);
     add_force(exports, given->force);
@@ -291,9 +297,10 @@ void add_export_commands(CLI::App& app, Arguments& a)
         [both](const Common& common) { return with_runs([&] { return diff_command(*both, common); }); });
     diff.add_option("A", both->first, "result file")->required()->type_name("RUN.nc");
     diff.add_option("B", both->second, "result file")->required()->type_name("RUN.nc");
-    diff.add_option("--rtol", both->rtol, "tolerance relative to the largest value; default 1e-6")
+    diff.add_option("--rtol", both->rtol, "tolerance relative to the largest value; default: 1e-6")
         ->type_name("R");
-    diff.add_option("--atol", both->atol, "and in m, rad, m/s, rad/s; default 1e-9")->type_name("A");
+    diff.add_option("--atol", both->atol, "absolute tolerance in m, rad, m/s, rad/s; default: 1e-9")
+        ->type_name("A");
     add_common(diff, a);
 }
 
@@ -301,53 +308,58 @@ void add_report_commands(CLI::App& app, Arguments& a)
 {
     const auto given = arguments_of<ReportArguments>();
     CLI::App& report = add_command(
-        app, a, "report", "Write a page for browsers: picture, plots, quality",
+        app, a, "report", "Write an HTML page with 3D view, plots and quality figures",
         [given](const Common& common) { return with_runs([&] { return report_command(*given, common); }); });
     CLI::App& view = add_command(
-        app, a, "view", "Show that page in the browser, from a local server",
+        app, a, "view", "Show this page in the browser, from a local server",
         [given](const Common& common) { return with_runs([&] { return view_command(*given, common); }); });
     for (CLI::App* command : {&report, &view}) {
         command->add_option("RUN", given->run, "result file")
             ->required(command == &report)
             ->type_name("RUN.nc");
-        command->add_option("OTHER", given->other, "result file to compare it with")->type_name("RUN.nc");
+        command->add_option("OTHER", given->other, "second result file to compare with")->type_name("RUN.nc");
         add_common(*command, a);
     }
-    add_file(report, "-o,--output", given->output, "page; default: the run's stem with .html, here")
+    add_file(report, "-o,--output", given->output,
+             "HTML file; default: name of the run with .html, in the current folder")
         ->type_name("FILE.html");
     add_force(report, given->force);
-    view.add_option("--port", given->port, "on 127.0.0.1; default: any that is free")
+    view.add_option("--port", given->port, "port on 127.0.0.1; default: any free port")
         ->check(CLI::Range(1, 65535))
         ->type_name("N");
     add_file(view, "--watch", given->watched,
-             "solve this scenario, and show it again whenever it or a mesh of it is saved")
+             "solve this scenario, and show it again whenever the file or one of its meshes is saved")
         ->type_name("FILE.toml");
     add_set(view, a);
-    view.add_flag("--address", given->address_only, "print the address and open no browser");
+    view.add_flag("--address", given->address_only, "print the address instead of opening a browser");
 }
 
 struct SchemaArguments {
     bool json = false, markdown = false;
+    std::string type;
 };
 
 void add_other_commands(CLI::App& app, Arguments& a)
 {
     const auto form = arguments_of<SchemaArguments>();
-    CLI::App& schema = add_command(app, a, "schema", "Print the schema of scenarios",
-                                   [form](const Common&) { return schema_command(!form->json); });
+    CLI::App& schema = add_command(app, a, "schema", "Print the scenario schema",
+                                   [form](const Common&) { return schema_command(!form->json, form->type); });
     auto* as_json = schema.add_flag("--json", form->json, "as JSON Schema, for editors");
     schema.add_flag("--md", form->markdown, "as a reference page (default)")->excludes(as_json);
+    schema.add_option("--type", form->type, "only the keys of one type, such as joint.revolute, as a table")
+        ->excludes(as_json)
+        ->type_name("TYPE");
     const auto code = arguments_of<std::string>();
-    CLI::App& explain =
-        add_command(app, a, "explain", "Explain a diagnostic code by examples; without one, list them",
-                    [code](const Common&) { return explain_command(*code); });
-    explain.add_option("CODE", *code, "as printed in brackets, like unknown-key")->type_name("CODE");
+    CLI::App& explain = add_command(app, a, "explain",
+                                    "Explain a diagnostic code with examples; without a code, list all codes",
+                                    [code](const Common&) { return explain_command(*code); });
+    explain.add_option("CODE", *code, "code, as printed in brackets, such as unknown-key")->type_name("CODE");
     const auto given = arguments_of<CompletionArguments>();
     CLI::App& completion =
-        add_command(app, a, "completion", "Print a script that completes commands in a shell",
+        add_command(app, a, "completion", "Print a shell completion script",
                     [given, &app](const Common&) { return completion_command(*given, command_table(app)); });
-    const std::vector<std::string> shells{"bash", "zsh", "fish"};
-    add_choice(completion, "SHELL", given->shell, shells, "shell that the script is for");
+    add_choice(completion, "SHELL", given->shell, {"bash", "zsh", "fish"},
+               "shell for which to print the script");
     completion.add_option("--bodies", given->bodies)->group("");   // for the scripts
     completion.add_option("--joints", given->joints)->group("");
     completion.add_option("--sensors", given->sensors)->group("");
@@ -360,26 +372,9 @@ void add_other_commands(CLI::App& app, Arguments& a)
 std::string footer()
 {
     std::string text = "Exit codes:\n";
-    for (const ExitMeaning& e : exit_meanings)
-        text += "  " + std::string(e.code) + std::string(10 - std::string_view(e.code).size(), ' ') +
-                e.meaning + "\n";
+    for (const auto& [code, meaning] : exit_meanings)
+        text += "  " + (std::string(code) + std::string(10, ' ')).substr(0, 10) + meaning + "\n";
     return text + "\nFirst steps: livens init; livens solve pendulum.toml";
-}
-
-std::vector<OptionInfo> options_of(const CLI::App& app)
-{
-    std::vector<OptionInfo> options;
-    for (const CLI::Option* option : app.get_options()) {
-        if (option->get_group().empty()) continue;   // hidden
-        OptionInfo info;
-        for (const std::string& name : option->get_snames()) info.names.push_back("-" + name);
-        for (const std::string& name : option->get_lnames()) info.names.push_back("--" + name);
-        if (option->get_items_expected_max() > 0) info.value = option->get_type_name();
-        info.description = option->get_description();
-        info.is_required = option->get_required();
-        options.push_back(info);
-    }
-    return options;
 }
 
 }   // namespace
@@ -400,14 +395,6 @@ void declare(CLI::App& app, Arguments& arguments)
     add_report_commands(app, arguments);
     add_other_commands(app, arguments);
     app.footer(footer());
-}
-
-std::vector<CommandInfo> command_table(const CLI::App& app)
-{
-    std::vector<CommandInfo> commands{{"", app.get_description(), options_of(app)}};
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-        commands.push_back({command->get_name(), command->get_description(), options_of(*command)});
-    return commands;
 }
 
 }   // namespace livens::program

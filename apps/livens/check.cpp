@@ -116,8 +116,7 @@ std::string springs_of(const Model& model, const State& start)
     }
     std::string text;
     for (std::size_t i = 0; i < std::min(lines.size(), most_told); ++i) text += "    " + lines[i] + "\n";
-    if (lines.size() > most_told)
-        text += fmt::format("    and {} more\n", lines.size() - most_told);
+    if (lines.size() > most_told) text += fmt::format("    and {} more\n", lines.size() - most_told);
     return text.empty() ? text : "  rods, springs and actuators at the start:\n" + text;
 }
 
@@ -139,17 +138,17 @@ int check_command(const std::string& file, const Common& common)
     const auto counted = [](std::size_t n, const char* one, const char* many) {
         return fmt::format("{} {}", n, n == 1 ? one : many);
     };
-    std::string text = fmt::format(
-        "{}: no errors\n  {}, {} with {}, {}, {} of freedom\n"
-        "  {:.6g} s to {:.6g} s {}\n  at least {} of memory{}\n",
-        plain(file), counted(scenario.model.bodies().size(), "body", "bodies"),
-        counted(scenario.model.joints().size(), "joint", "joints"),
-        counted(static_cast<std::size_t>(scenario.model.n_rows()), "constraint", "constraints"),
-        counted(scenario.model.loads().size(), "load", "loads"),
-        counted(static_cast<std::size_t>(assembly.degrees_of_freedom), "degree", "degrees"),
-        start_of(scenario.time), end_of(scenario.time), division_of(scenario),
-        bytes_in_words(memory_needed(scenario).most()),
-        std::holds_alternative<Span>(scenario.time) ? ", plus that of the elements" : "");
+    std::string text =
+        fmt::format("{}: no errors\n  {}, {} with {}, {}, {} of freedom\n"
+                    "  {:.6g} s to {:.6g} s {}\n  at least {} of memory{}\n",
+                    plain(file), counted(scenario.model.bodies().size(), "body", "bodies"),
+                    counted(scenario.model.joints().size(), "joint", "joints"),
+                    counted(static_cast<std::size_t>(scenario.model.n_rows()), "constraint", "constraints"),
+                    counted(scenario.model.loads().size(), "load", "loads"),
+                    counted(static_cast<std::size_t>(assembly.degrees_of_freedom), "degree", "degrees"),
+                    start_of(scenario.time), end_of(scenario.time), division_of(scenario),
+                    bytes_in_words(memory_needed(scenario).most()),
+                    std::holds_alternative<Span>(scenario.time) ? ", plus that of the elements" : "");
     text += coordinates_of(model, assembly);
     text += springs_of(model, assembly.start);
     for (const std::string& note : assembly.notes) text += "  note: " + plain(note) + "\n";

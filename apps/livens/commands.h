@@ -113,7 +113,8 @@ int diff_command(const DiffArguments& arguments, const Common& common);
 /// `name` may be empty.
 int init_command(const std::string& name, const Common& common);
 
-int schema_command(bool markdown);
+/// `type` is one of schema_types(), or empty for the whole schema.
+int schema_command(bool markdown, const std::string& type);
 int explain_command(const std::string& code);
 int version_command(const Common& common);
 

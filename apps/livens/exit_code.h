@@ -25,16 +25,16 @@ struct ExitMeaning {
     const char* meaning;
 };
 inline constexpr std::array exit_meanings{
-    ExitMeaning{"0", "converged, or done"},
+    ExitMeaning{"0", "converged; other commands: success"},
     ExitMeaning{"1", "diff: the runs differ"},
-    ExitMeaning{"2", "usage"},
-    ExitMeaning{"3", "scenario invalid"},
-    ExitMeaning{"4", "not converged; what was solved is written"},
+    ExitMeaning{"2", "usage error"},
+    ExitMeaning{"3", "error in the scenario"},
+    ExitMeaning{"4", "not converged (the motion so far is written); no equilibrium"},
     ExitMeaning{"5", "resource limit"},
-    ExitMeaning{"6", "input or output"},
-    ExitMeaning{"7", "suspect: solved, but the motion fails its checks"},
+    ExitMeaning{"6", "input/output error"},
+    ExitMeaning{"7", "suspect: solved, but the motion fails the acceptance checks"},
     ExitMeaning{"70", "internal error"},
-    ExitMeaning{"130, 143", "stopped by Ctrl-C or SIGTERM"},
+    ExitMeaning{"130, 143", "stopped by Ctrl-C or SIGTERM; the motion so far is written"},
 };
 
 }   // namespace livens::program

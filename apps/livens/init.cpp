@@ -31,7 +31,7 @@ name = "rod"
 shape = { box = [1, 0.05, 0.05] }   # edges along the body's own axes
 density = 7850
 position = [0.5, 0, 0]              # of its centre, at the start
-# angular_velocity = [0, 1, 0]      # give it a push: rad/s about the world's axes
+# angular_velocity = [0, 1, 0]      # give it a push: rad/s about the world axes
 
 [[joint]]
 name = "hinge"

@@ -69,7 +69,8 @@ int parse_failed(const CLI::App& app, const CLI::ParseError& error, Common commo
 int parsed_main(int n, char** arguments)
 {
     Arguments a;
-    CLI::App app("livens " + std::string(version) + ": rigid multibody dynamics with elements in time",
+    CLI::App app("livens " + std::string(version) +
+                     ": rigid multibody dynamics with space-time finite elements",
                  "livens");
     declare(app, a);
     try {

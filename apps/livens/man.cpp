@@ -62,17 +62,17 @@ std::string usage(const CommandInfo& command)
 constexpr const char* environment = R"(.SH ENVIRONMENT
 .TP
 \fBNO_COLOR\fR
-If it is set and not empty, there are no colours unless \fB\-\-color=always\fR asks for them.
+If set and not empty, colours are off unless \fB\-\-color=always\fR is given.
 .TP
 \fBCOLUMNS\fR
-Width that lines are wrapped to, instead of the terminal\(aqs own.
+Width to which lines are wrapped, instead of the width of the terminal.
 .TP
 \fBLIVENS_SIMD\fR
-Instructions to solve with, \fBsse2\fR, \fBavx2\fR or \fBavx512\fR, where \fB\-\-simd\fR does not say.
-Equal sets give equal bytes.
+Instruction set to solve with, \fBsse2\fR, \fBavx2\fR or \fBavx512\fR, unless \fB\-\-simd\fR is given.
+The same set gives the same bytes.
 .TP
 \fBLC_ALL\fR, \fBLC_CTYPE\fR, \fBLANG\fR
-Signs beyond ASCII are shown on terminals if the first of these that is not empty names UTF\-8. Nothing else
+Non\-ASCII signs are used on terminals if the first non\-empty one of these names UTF\-8. Nothing else
 depends on the locale.
 .SH EXAMPLES
 .nf
@@ -87,16 +87,15 @@ livens export pendulum.nc \-\-csv pendulum.csv
 
 int man_command(const std::vector<CommandInfo>& commands)
 {
-    std::string text =
-        ".TH LIVENS 1 \"\" \"livens " + roff(version) + "\" \"User Commands\"\n" +
-        ".SH NAME\nlivens \\- rigid multibody dynamics with elements in time\n.SH SYNOPSIS\n.nf\n";
+    std::string text = ".TH LIVENS 1 \"\" \"livens " + roff(version) + "\" \"User Commands\"\n" +
+                       ".SH NAME\nlivens \\- rigid multibody dynamics with space\\-time finite elements\n.SH "
+                       "SYNOPSIS\n.nf\n";
     for (const CommandInfo& command : commands)
         if (!command.name.empty()) text += usage(command) + "\n";
     text +=
-        ".fi\n.SH DESCRIPTION\nComputes the motion of rigid bodies that are tied together by joints, as a "
-        "scenario "
-        "describes\nthem, and writes it to a result file. Data goes to standard output, all else to standard "
-        "error.\n.SH OPTIONS\n";
+        ".fi\n.SH DESCRIPTION\nComputes the motion of rigid bodies connected by joints, as described in a "
+        "scenario file,\nand writes it "
+        "to a result file. Data goes to standard output, everything else to standard error.\n.SH OPTIONS\n";
     text += option_entries(commands.front()) + ".SH COMMANDS\n";
     for (const CommandInfo& command : commands)
         if (!command.name.empty())

@@ -248,7 +248,7 @@ std::string summary_of(const Solved& solved, const Places& p, bool verbose)
                     n_blocks > 0 ? fmt::format(" ({:.1f} {})", mean, is_blocked ? "per block" : "per element")
                                  : "",
                     report.factorisations > 0 ? fmt::format("{} factorisation{}", report.factorisations,
-                                                          report.factorisations == 1 ? "" : "s")
+                                                            report.factorisations == 1 ? "" : "s")
                                               : "no factorisation"));
     add_figures(summary, run, verbose);
     add_notes(summary, run);

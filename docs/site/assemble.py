@@ -2,6 +2,7 @@
 """Lays out the pages of the site from what the project has: assemble.py ROOT PROGRAM FOLDER
 
     documents     docs/*.md, docs/howto, docs/coming_from: links are turned to where things lie on the site
+    types         docs/joints, docs/loads, docs/drives, docs/sensors: a page a type, with an index of pictures
     theory        docs/theory.md, one page a section
     diagnostics   docs/diagnostics.md, one page a code
     gallery       every example, solved by PROGRAM, with its report; scripts and notebooks of Python
@@ -216,6 +217,30 @@ def add_documents(site: Site) -> None:
                     sys.exit(f"{source} does not name {', '.join(sorted(missing))}")
                 text += "\n" + toctree(named, hidden=True)
             site.add(page, text, source)
+
+
+TYPES = {"joints": "Joint types", "drives": "Drive types", "loads": "Load types", "sensors": "Sensor types"}
+
+
+def add_types(site: Site) -> None:
+    """In the order of the table on docs/scenario.md."""
+    text = (site.root / "docs/scenario.md").read_text(encoding="utf-8")
+    for folder, title in TYPES.items():
+        names = re.findall(rf"^\| \[`\w+`\]\({folder}/(\w+)\.md\)", text, re.M)
+        cards = []
+        for name in names:
+            source, page = f"docs/{folder}/{name}.md", f"{folder}/{name}"
+            words = (site.root / source).read_text(encoding="utf-8")
+            site.known_anchors(source, words, page, True)
+            site.add(page, words, source)
+            site.copies[f"figures/{folder}/{name}.svg"] = site.root / f"docs/figures/{folder}/{name}.svg"
+            lead = " ".join(words.split("\n\n")[2].split())
+            cards.append(f"::::{{grid-item-card}} {name}\n:link: {name}\n:link-type: doc\n:img-top: ../figures/{folder}/{name}.svg\n\n{lead}\n::::\n")
+        if not names:
+            sys.exit(f"docs/scenario.md lists no {folder}")
+        key = f"../scenario.md#{folder.removesuffix('s')}"
+        site.add(f"{folder}/index", f"# {title}\n\nKeys that all of them have are in [scenario files]({key}).\n\n:::::{{grid}} 1 2 3 3\n:gutter: 3\n\n"
+                 + "".join(cards) + ":::::\n\n" + toctree(names, hidden=True))
 
 
 def add_theory(site: Site) -> None:
@@ -472,6 +497,7 @@ def main() -> None:
         site.add(name.lower(), text, f"{name}.md")
     add_gallery(site)
     add_documents(site)
+    add_types(site)
     add_theory(site)
     add_diagnostics(site)
     add_reference(site)

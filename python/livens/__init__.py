@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""livens: rigid multibody dynamics, the whole motion solved at once.
+"""livens: rigid multibody dynamics with space-time finite elements.
 
-A model is made by name (:class:`Model`, :func:`load`), solved (:func:`solve`), and its solution looked at by name::
+Build a model from named parts (:class:`Model`, :func:`load`), solve it (:func:`solve`), and read its solution by
+name::
 
     import livens as lv
 
@@ -11,7 +12,8 @@ A model is made by name (:class:`Model`, :func:`load`), solved (:func:`solve`), 
     sol = lv.solve(m, 10)
     sol["rod"].position, sol["pivot"].force, sol.energy
 
-SI units and world axes unless said. ``docs/python.md`` is the guide, ``docs/scenario.md`` lists all keys.
+SI units and world axes unless noted otherwise. ``docs/python.md`` is the guide, ``docs/scenario.md`` lists all
+keys.
 """
 from typing import TYPE_CHECKING
 

@@ -241,7 +241,7 @@ class Tree(Adders):
 
     def _include(self, table: Table) -> None:
         """Appends an ``[[include]]``, or raises what is wrong with it."""
-        includes = self._root.setdefault("include", [])
+        includes = self._root["include"] = self._root.get("include", [])
         includes.append(table)
         found = faults_in({**self._root, "time": {"end": 1}}, "include", table)
         if found:

@@ -28,13 +28,14 @@ def spelled(name: str) -> str:
 class Section:
     """A table of a model. Its keys are attributes: reading gives SI units, assigning takes strings with units, too.
 
-    Keys that were not given read as their default, or ``None``; assigning ``None``, or ``del``, takes a key
-    away. Where several keys say the same, the last one assigned counts: a body's ``mass`` takes its ``density``
-    away, a ``quaternion`` its ``directors`` or ``rotation_vector``, ``elements`` of time an ``accuracy``. What a key means stands in ``docs/scenario.md``; :meth:`keys` lists them.
+    Keys that are not set read as their default, or as ``None``; assigning ``None``, or ``del``, removes a key. If
+    several keys exclude each other, assigning one removes the others: the ``mass`` of a body removes its
+    ``density``, a ``quaternion`` its ``directors`` or ``rotation_vector``, ``elements`` of time an ``accuracy``.
+    ``docs/scenario.md`` explains all keys; :meth:`keys` lists them.
 
     Raises:
-        InputError: on assigning what the key cannot be (``unit``, ``wrong-type``, ``out-of-range``, ..).
-        AttributeError: on reading what is no key of this table.
+        InputError: on assigning an invalid value (``unit``, ``wrong-type``, ``out-of-range``, ..).
+        AttributeError: on reading a key that this table does not have.
 
     Example:
         >>> import livens as lv
@@ -61,13 +62,13 @@ class Section:
             object.__setattr__(self, name, value)
 
     def keys(self) -> list[str]:
-        """All keys that this table may have; those that have values are :attr:`given`."""
+        """All keys that this table can have; :attr:`given` contains those that are set."""
         kind = self._table.get(self._schema["chooser"])
         return list(schema().keys(self._schema, kind))
 
     @property
     def given(self) -> dict[str, Any]:
-        """A copy of what was given, as it was given: strings with their units."""
+        """A copy of the keys that are set, with the values as assigned: strings with their units."""
         return dict(self._table.copy())
 
     def __getattr__(self, name: str) -> Any:
@@ -132,13 +133,13 @@ class RootSection(Section):
 
 
 class Entry(Section):
-    """Something in a model that has a name: a body, joint, drive, load or sensor."""
+    """A named part of a model: a body, joint, drive, load or sensor."""
 
     __slots__ = ()
 
     @property
     def name(self) -> str:
-        """How everything else calls it; for joints, drives and loads without one, type and bodies."""
+        """Its name; for joints, drives and loads without a name, a default made of type and bodies."""
         return default_name(self._key, self._table)
 
     @name.setter
@@ -222,8 +223,8 @@ class Key(Generic[_R, _W]):
 class Names(Mapping[str, _T]):
     """All bodies (joints, drives, loads, sensors) of a model by name, in their order.
 
-    Iterating gives names, indexing handles; an unknown name is a ``KeyError`` that says which one was probably
-    meant.
+    Iteration yields names, indexing returns handles. An unknown name is a ``KeyError`` that suggests the nearest
+    name.
     """
 
     __slots__ = ("_model", "_kind", "_type")

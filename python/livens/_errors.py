@@ -16,7 +16,7 @@ _PACKAGE = __name__.rpartition(".")[0]
 
 
 class Place(NamedTuple):
-    """Where something was written: a file, and a line and column that count from 1 (0: not known)."""
+    """A source location: file, line and column, counted from 1 (0: not known)."""
 
     file: str = ""
     line: int = 0
@@ -55,7 +55,7 @@ def _shown(text: str) -> str:
 class Diagnostic:
     """One finding in a model, as :meth:`livens.Model.check` lists them.
 
-    ``str(d)`` shows it with the line it speaks of, as the program does.
+    ``str(d)`` formats it with the source line that it refers to, as the program does.
 
     Example:
         >>> import livens as lv
@@ -67,19 +67,19 @@ class Diagnostic:
     severity: str
     """``"error"`` or ``"warning"``."""
     code: str
-    """Stable and explained by :func:`livens.explain`: ``"body-unknown"``."""
+    """Stable code, explained by :func:`livens.explain`: ``"body-unknown"``."""
     message: str
-    """One sentence."""
+    """The message, one sentence."""
     path: str = ""
     """The place in the model: ``"joint[pivot].between"``."""
     note: str = ""
-    """The law that is broken; may be empty."""
+    """The rule that is violated; may be empty."""
     help: str = ""
     """The likely fix; may be empty."""
     place: Place = field(default=Place(), compare=False)
-    """File and line that wrote it: of a scenario file, or of Python's code."""
+    """File and line where it was written: a scenario file, or Python code."""
     source: str = field(default="", compare=False, repr=False)
-    """The text of that line, where it is known."""
+    """The text of this line, if known."""
 
     @property
     def file(self) -> str:
@@ -118,9 +118,9 @@ class Diagnostic:
 
 
 class InputError(ValueError):
-    """Something in a model or a call is wrong; a ``ValueError``.
+    """An error in a model or in the arguments of a call; a ``ValueError``.
 
-    Nothing has been changed by the call that raised it.
+    The call that raised it has changed nothing.
 
     Example:
         >>> import livens as lv
@@ -133,7 +133,7 @@ class InputError(ValueError):
     """
 
     diagnostics: list[Diagnostic]
-    """All that was found, the first of which the other attributes speak of."""
+    """All findings; the other attributes refer to the first of them."""
 
     def __init__(self, diagnostics: list[Diagnostic]) -> None:
         more = len(diagnostics) - 1
@@ -163,12 +163,12 @@ class InputError(ValueError):
 
     @property
     def note(self) -> str:
-        """The law that is broken; may be empty."""
+        """The rule that is violated; may be empty."""
         return self.diagnostics[0].note
 
     @property
     def file(self) -> str:
-        """The file that wrote what is wrong: a scenario, or Python's code."""
+        """The file that contains the error: a scenario, or Python code."""
         return self.diagnostics[0].file
 
     @property
@@ -178,7 +178,7 @@ class InputError(ValueError):
 
 
 class ResultFileError(OSError):
-    """A file that cannot be read or written, or is not what it should be; an ``OSError``."""
+    """A file that cannot be read or written, or has the wrong content; an ``OSError``."""
 
     code: str
     """Explained by :func:`livens.explain`."""
@@ -192,7 +192,7 @@ class ResultFileError(OSError):
 
 
 class SolveError(RuntimeError):
-    """Raised by ``livens.solve(..., strict=True)`` for what would only be warned of otherwise.
+    """Raised by ``livens.solve(..., strict=True)`` where only a warning would be issued otherwise.
 
     Example:
         >>> import livens as lv
@@ -207,7 +207,7 @@ class SolveError(RuntimeError):
     """
 
     partial: Solution
-    """What was solved: up to where it failed, or all of it if it is suspect."""
+    """The solution: up to the time of failure, or the whole motion if it is suspect."""
 
     def __init__(self, message: str, partial: Solution) -> None:
         super().__init__(message)
@@ -218,15 +218,15 @@ class SolveError(RuntimeError):
 
 
 class SolveWarning(UserWarning):
-    """The motion did not converge, or fails the checks that are made of it."""
+    """The motion did not converge, or fails the acceptance checks."""
 
 
 class ModelWarning(UserWarning):
-    """A model can be solved, but something in it is worth a look."""
+    """The model can be solved, but is unusual or possibly wrong."""
 
 
 class SlowWarning(UserWarning):
-    """Python functions as loads are called for every instant: thousands of times slower than expressions."""
+    """A Python function as a load is called at every evaluation: thousands of times slower than an expression."""
 
 
 def fault(code: str, message: str, path: str = "", help: str = "", note: str = "",

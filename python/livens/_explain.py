@@ -7,10 +7,10 @@ from ._errors import fault
 
 
 def explain(code: str) -> str:
-    """The page of a diagnostic code, as ``livens explain CODE`` prints it: what it means, wrong and right.
+    """The page of a diagnostic code, as printed by ``livens explain CODE``: meaning, a wrong and a right example.
 
     Raises:
-        InputError: ``unknown-choice`` for what is no code.
+        InputError: ``unknown-choice`` for an unknown code.
 
     Example:
         >>> import livens as lv

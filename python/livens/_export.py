@@ -131,7 +131,7 @@ def _ends_of(name: str, n: int) -> list[str]:
 
 
 class Comparison:
-    """Two motions beside each other, as :func:`livens.compare` gives them."""
+    """Comparison of two motions, returned by :func:`livens.compare`."""
 
     def __init__(self, first: Series, second: Series, largest: dict[str, dict[str, float]]) -> None:
         self.first = first
@@ -142,7 +142,7 @@ class Comparison:
         """Largest differences of each body: ``position`` (m), ``orientation`` (rad), ``velocity`` (m/s)."""
 
     def plot(self, *what: str, **keywords: Any) -> npt.NDArray[Any]:
-        """Draws both, the second one dashed; see :meth:`Solution.plot`, whose ``unit`` is taken."""
+        """Plots both, the second one dashed; for ``unit`` see :meth:`Solution.plot`."""
         unit = keywords.pop("unit", None)
         return plot([("first", self.first), ("second", self.second)], what, keywords, unit)
 
@@ -154,12 +154,12 @@ class Comparison:
 
 
 def compare(first: Any, second: Any, t: Any = None) -> Comparison:
-    """Compares two solutions, which may have other elements, at common instants.
+    """Compares two solutions at common times; their elements may differ.
 
     Args:
         first: A solution.
-        second: Another one, with the same names of bodies.
-        t: Instants, s, shape (n,); default: element ends of the first that the second one reaches.
+        second: Another solution, with the same body names.
+        t: Times, s, shape (n,). Default: element ends of the first solution, up to the end of the second.
 
     Raises:
         InputError: ``time-outside``; ``body-unknown`` if they have no body in common.

@@ -9,7 +9,7 @@ import numpy as np
 
 
 class BodyState:
-    """What a Python function that is a load sees of its body; see :meth:`Model.add_function`."""
+    """The state of a body, passed to a Python function that acts as a load; see :meth:`Model.add_function`."""
 
     __slots__ = ("position", "directors", "velocity", "angular_velocity")
 

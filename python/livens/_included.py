@@ -23,6 +23,15 @@ class Added(Mapping[str, str]):
 
     ``left["knee"]`` is ``"left knee"``, which stands wherever a name does; an unknown name is a ``KeyError`` that says
     which one was probably meant. To change a part, change the model before it is added.
+
+    Example:
+        >>> import livens as lv
+        >>> wheel = lv.Model("wheel")
+        >>> rim = wheel.add_body("rim", lv.cylinder(radius=0.3, length=0.05, mass=8))
+        >>> m = lv.Model("cart")
+        >>> front = m.add(wheel, "front ", position=(1, 0, 0))
+        >>> front["rim"]
+        'front rim'
     """
 
     def __init__(self, prefix: str, names: list[str]) -> None:

@@ -21,14 +21,14 @@ def load(file: str | os.PathLike[str] | None = None, *, text: str | None = None,
 
     Args:
         file: Its name.
-        text: The scenario itself, instead.
-        check: Whether what is wrong with it is raised now; else by :func:`solve`, and listed by
-            :meth:`Model.check`. What is no TOML is always raised.
-        parameters: Values that parameters have instead of those of the scenario: numbers (in SI units) or strings, as in
+        text: The scenario as a string, instead of ``file``.
+        check: Whether errors are raised at once; otherwise by :func:`solve`, and listed by :meth:`Model.check`.
+            TOML syntax errors are always raised.
+        parameters: Values of parameters that replace those of the scenario: numbers (in SI units) or strings, as in
             ``{"L": 0.4, "width": "30 mm"}``.
 
     Raises:
-        InputError: with line and column of all that is wrong.
+        InputError: with line and column of all errors.
         OSError: the file cannot be read.
 
     Example:

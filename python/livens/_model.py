@@ -37,11 +37,11 @@ class Model(Tree):
     """Bodies, joints, drives, loads and sensors: the tree of a scenario file, edited by name.
 
     Args:
-        title: One line for people.
-        gravity: Acceleration of free fall, m/s^2, world axes, shape (3,). Default: none.
+        title: A title; copied to the result.
+        gravity: Gravitational acceleration, m/s^2, world axes, shape (3,). Default: none.
 
-    Everything is refused where it is written: errors are :class:`InputError` with the line of the call. Models
-    can be compared, copied, pickled and hashed (by content, so do not edit a model that is a key of a dict).
+    Errors are raised by the call that contains them: :class:`InputError` with the line of this call. Models can be
+    compared, copied, pickled and hashed (by content, so do not edit a model that is a key of a dict).
 
     Example:
         >>> import livens as lv
@@ -84,7 +84,7 @@ class Model(Tree):
 
     @property
     def title(self) -> str:
-        """One line for people."""
+        """Title; copied to the result."""
         return str(self._root.get("title", ""))
 
     @title.setter
@@ -93,7 +93,7 @@ class Model(Tree):
 
     @property
     def gravity(self) -> np.ndarray[Any, np.dtype[np.float64]]:
-        """Acceleration of free fall, m/s^2, world axes, shape (3,)."""
+        """Gravitational acceleration, m/s^2, world axes, shape (3,)."""
         gravity: np.ndarray[Any, np.dtype[np.float64]] = self._root_section().__getattr__("gravity")
         return gravity
 
@@ -132,7 +132,7 @@ class Model(Tree):
 
     @property
     def loads(self) -> Names[Load]:
-        """All loads by name; Python functions are not among them."""
+        """All loads by name, except Python functions."""
         return Names(self, "load", Load)
 
     @property
@@ -147,7 +147,7 @@ class Model(Tree):
 
     @property
     def time(self) -> Section:
-        """The table ``[time]``: ``m.time.end = 5``. What :func:`livens.solve` is told wins."""
+        """The table ``[time]``: ``m.time.end = 5``. Arguments of :func:`livens.solve` take precedence."""
         return self._section("time")
 
     @property
@@ -182,10 +182,10 @@ class Model(Tree):
         return isinstance(name, str) and bool(self._named(name))
 
     def remove(self, part: str | Entry) -> None:
-        """Takes a body, point, joint, drive, load or sensor away. What refers to it is an error on solving.
+        """Removes a body, point, joint, drive, load or sensor. Parts that still refer to it are an error in :func:`solve`.
 
         Raises:
-            KeyError: nothing is called that.
+            KeyError: no part has this name.
         """
         if isinstance(part, str) and part in self._functions:
             del self._functions[part]
@@ -201,7 +201,7 @@ class Model(Tree):
     # As a value.
 
     def copy(self) -> Model:
-        """An independent model of the same content."""
+        """An independent copy of the model."""
         other = object.__new__(type(self))
         other._root = self._root.copy()
         other._file, other._text = self._file, self._text
@@ -233,15 +233,14 @@ class Model(Tree):
         self._forget()
 
     def to_toml(self, file: str | os.PathLike[str] | None = None, *, force: bool = False) -> str:
-        """The model as a scenario file, which the program reads, too; written if ``file`` is given.
+        """The model as the text of a scenario file, also readable by the program; written to ``file`` if given.
 
-        A model that was loaded and not edited since gives the text that was read, comments included; else the
-        text is made anew. ``load(text=m.to_toml()) == m``.
+        A model that was loaded and not edited returns the original text, including comments; otherwise the text is
+        generated. ``load(text=m.to_toml()) == m``.
 
         Args:
             file: Its name.
-            force: A file that is there and holds something else is replaced only if this is true; never a mesh of
-                the model.
+            force: Whether to replace an existing file with other content; never a mesh of the model.
 
         Raises:
             InputError: ``python-function`` if the model has Python functions as loads.
@@ -321,18 +320,18 @@ class Model(Tree):
     # Python functions.
 
     def add_function(self, name: str, body: str | Body, function: Callable[..., Any]) -> None:
-        """A load by a Python function, for trying out: thousands of times slower than an expression.
+        """Adds a load given by a Python function, for experiments: thousands of times slower than an expression.
 
         Args:
-            name: Of the load.
-            body: On which it acts.
+            name: Name of the load.
+            body: The body on which it acts.
             function: ``function(t, body)`` returns the force (N, at the body's reference point), or force and
                 torque (N m) as six numbers, in world axes. ``body`` has ``position`` (m), ``velocity`` (m/s),
                 ``directors`` (rows d1, d2, d3) and ``angular_velocity`` (rad/s), each an array, in world axes.
-                It has to be smooth in all of them, and must not remember anything.
+                It must be smooth in all of these and must not depend on earlier calls.
 
-        Such a model cannot be pickled, written to a file or given to :func:`livens.solve_many`. What the
-        function raises ends the solution. Warns with :class:`SlowWarning`.
+        A model with functions cannot be pickled, written to a file or passed to :func:`livens.solve_many`. An
+        exception raised by the function ends the solution. Issues a :class:`SlowWarning`.
 
         Raises:
             InputError: ``body-unknown``, ``name-duplicate``.
@@ -354,9 +353,9 @@ class Model(Tree):
     # Checking and building.
 
     def check(self) -> list[Diagnostic]:
-        """All that is wrong with the model or worth a look, in its order (20 at most); empty: nothing.
+        """Errors and warnings of the model, in its order, 20 at most; empty if there are none.
 
-        Never solves. A model without ``[time]`` is looked at as if it had some.
+        Does not solve anything. A model without ``[time]`` is checked with a default one.
         """
         _, found = self._build({} if "time" in self._root else {"time": some_time(self._root)})
         return found
@@ -364,16 +363,17 @@ class Model(Tree):
     # Rest.
 
     def find_equilibrium(self) -> Equilibrium:
-        """Where the mechanism rests under weight and loads, searched from its start (or known end).
+        """Finds a static equilibrium under gravity and loads, starting from the initial (or known final) state.
 
-        V = 0, drives and loads as they are at the start of time. The potential energy falls on the way, so it is
-        a stable equilibrium, unless the start is balanced itself: then that one is given, whatever its stability.
+        Velocities are ignored; drives and loads are held at their values at the initial time. The potential energy
+        decreases during the search, so that the equilibrium is stable, unless the start itself is balanced; this
+        equilibrium is then returned, stable or not.
 
         Returns:
-            The equilibrium. If there is none, ``success`` is False, and :class:`SolveWarning` has been warned of.
+            The equilibrium. If none was found, ``success`` is False and a :class:`SolveWarning` has been issued.
 
         Raises:
-            InputError: what is wrong with the model.
+            InputError: for errors in the model.
 
         Example:
             >>> import livens as lv
@@ -393,14 +393,15 @@ class Model(Tree):
         return rest
 
     def linearise(self, at: Literal["equilibrium", "start"] = "equilibrium") -> Linearisation:
-        """Masses, damping and stiffness of small motions, their modes, and state matrices.
+        """Linearises about an equilibrium: mass, damping and stiffness matrices, modes, and state matrices.
 
         Args:
-            at: About what: the equilibrium that :meth:`find_equilibrium` finds, or the start, which must be one.
+            at: State to linearise about: the result of :meth:`find_equilibrium`, or the start, which must be an
+                equilibrium.
 
         Raises:
             EquilibriumError: no equilibrium was found.
-            InputError: ``not-at-rest``, ``not-in-equilibrium`` with ``at="start"``; what is wrong with the model.
+            InputError: ``not-at-rest``, ``not-in-equilibrium`` with ``at="start"``; for errors in the model.
 
         Example:
             >>> import livens as lv
@@ -424,10 +425,10 @@ class Model(Tree):
         return Linearisation(linear)
 
     def vibration_modes(self, at: Literal["equilibrium", "start"] = "equilibrium") -> Modes:
-        """How the mechanism vibrates about its rest: frequencies, damping, shapes.
+        """Natural frequencies, damping ratios and mode shapes about an equilibrium.
 
         Args:
-            at: As :meth:`linearise` has it, which gives matrices, too.
+            at: See :meth:`linearise`, which also returns matrices.
 
         Raises:
             EquilibriumError: no equilibrium was found.

@@ -43,7 +43,7 @@ class Part:
 
     @property
     def name(self) -> str:
-        """What the model calls it."""
+        """Its name in the model."""
         return self._name
 
     @property
@@ -52,7 +52,7 @@ class Part:
         return self._series.t
 
     def arrays(self) -> dict[str, Floats]:
-        """All that there is, by name; units are those of :meth:`unit`."""
+        """All arrays by name; :meth:`unit` returns their units."""
         raise NotImplementedError
 
     def unit(self, name: str) -> str:
@@ -77,9 +77,9 @@ class Part:
 
 
 class BodySeries(Part):
-    """A body along a motion. World axes unless said; the first dimension is time (none for a single instant).
+    """A body along a motion. World axes unless noted; the first dimension is time (absent for a single time).
 
-    Point masses have no orientation: what tells of it is nan.
+    For point masses, which have no orientation, arrays of orientation are nan.
     """
 
     def _get(self, name: str) -> Floats:
@@ -90,13 +90,13 @@ class BodySeries(Part):
 
     @property
     def position(self) -> Floats:
-        """Of the reference point, m, world, shape (n, 3). At element ends a view of the motion."""
+        """Position of the reference point, m, world, shape (n, 3). At element ends a view of the motion."""
         view = self._series._end_view("end_configurations")
         return self._get("position") if view is None else view[:, self._index, 0]
 
     @property
     def velocity(self) -> Floats:
-        """Of the reference point, m/s, world, shape (n, 3). At element ends a view of the motion."""
+        """Velocity of the reference point, m/s, world, shape (n, 3). At element ends a view of the motion."""
         view = self._series._end_view("end_velocities")
         return self._get("velocity") if view is None else view[:, self._index, 0]
 
@@ -109,19 +109,19 @@ class BodySeries(Part):
     def quaternion(self) -> Floats:
         """Orientation (w, x, y, z), body to world, sign continuous, shape (n, 4). SciPy's has w last.
 
-        Of the nearest orthonormal triad, where directors are skew."""
+        For oblique directors, the quaternion of the nearest orthonormal triad."""
         return self._get("quaternion")
 
     @property
     def directors(self) -> Floats:
         """Rows d1, d2, d3 in world axes, shape (n, 3, 3): the transpose of the rotation matrix.
 
-        Orthonormal, unless the body was stated with skew ones."""
+        Orthonormal, unless the model gives oblique directors."""
         return self._get("directors")
 
     @property
     def directors_raw(self) -> Floats:
-        """The same of the motion itself, with its violation of rigidity, shape (n, 3, 3)."""
+        """The directors as solved, including their rigidity violation, shape (n, 3, 3)."""
         return self._get("directors_raw")
 
     @property
@@ -136,20 +136,20 @@ class BodySeries(Part):
 
     @property
     def acceleration(self) -> Floats:
-        """Of the reference point, m/s^2, world, shape (n, 3).
+        """Acceleration of the reference point, m/s^2, world, shape (n, 3).
 
-        From the equations of motion at the instant, not from differences; nan where joints lose rank. Where a load
-        jumps, afterwards."""
+        Computed from the equations of motion at each time, not from differences; nan where joints lose rank. At a
+        jump of a load, the value just after it."""
         return self._series._shaped(self._series._accelerations()["acceleration"][:, self._index])
 
     @property
     def angular_acceleration(self) -> Floats:
-        """rad/s^2, world axes, shape (n, 3). Likewise."""
+        """rad/s^2, world axes, shape (n, 3). Computed like :attr:`acceleration`."""
         return self._series._shaped(self._series._accelerations()["angular_acceleration"][:, self._index])
 
     @property
     def center_acceleration(self) -> Floats:
-        """Of the centre of mass, m/s^2, world, shape (n, 3): the forces on the body by its mass."""
+        """Acceleration of the centre of mass, m/s^2, world, shape (n, 3): total force divided by mass."""
         return self._moved(self.acceleration, self.center_of_mass - self.position)
 
     def _moved(self, acceleration: Floats, arm: Floats) -> Floats:
@@ -161,27 +161,28 @@ class BodySeries(Part):
 
     @property
     def rotation(self) -> Floats:
-        """The rotation matrix R, body to world, its columns the body's axes, shape (n, 3, 3)."""
+        """Rotation matrix R from body to world; its columns are the body axes, shape (n, 3, 3)."""
         return rotation_of(self.quaternion)
 
     def rotation_vector(self, seen_from: str | Entry | Part = "world") -> Floats:
-        """The turn of the body from the axes of another one (or the world), rad, in these axes, shape (n, 3).
+        """Rotation vector of the body relative to another body (or the world), rad, in the axes of the latter,
+        shape (n, 3).
 
-        At most half a turn long: joints count turns, with their ``angle``."""
+        Its length is at most pi; the ``angle`` of a joint counts full turns."""
         return rotation_vector_of(self._quaternion_from(seen_from))
 
     def angle_to(self, other: str | Entry | Part = "world") -> Floats:
-        """The angle between both bodies' axes, rad, from 0 to pi, shape (n,)."""
+        """Angle of the rotation between two bodies, rad, from 0 to pi, shape (n,)."""
         angle: Floats = np.linalg.norm(self.rotation_vector(other), axis=-1)
         return angle
 
     def euler(self, order: str, seen_from: str | Entry | Part = "world") -> Floats:
-        """Euler angles, rad, in the order of their turns, shape (n, 3).
+        """Euler angles, rad, in the order of rotation, shape (n, 3).
 
         Args:
-            order: ``"zyx"`` (yaw, pitch, roll), ``"zxz"``, ..: turns about the body's own axes one after another, so
-                that ``R = R_z(a) R_y(b) R_x(c)``; SciPy writes it ``"ZYX"``. First and last angle are without jumps.
-            seen_from: The body in whose axes they are; default the world.
+            order: ``"zyx"`` (yaw, pitch, roll), ``"zxz"``, ..: successive rotations about body axes, so that
+                ``R = R_z(a) R_y(b) R_x(c)``; SciPy writes it ``"ZYX"``. The first and last angle are continuous.
+            seen_from: Body relative to which the angles are computed; default: the world.
         """
         return euler_of(self._quaternion_from(seen_from), order)
 
@@ -192,7 +193,7 @@ class BodySeries(Part):
         return relative_quaternion(self.quaternion, body.quaternion)
 
     def point(self, at: Any) -> PointSeries:
-        """A material point of the body, in its coordinates, m: its position, velocity and acceleration."""
+        """Position, velocity and acceleration of a point of the body, given in body coordinates, m."""
         from ._tree import plain
         given = plain(at, {"unit": "m", "other_unit": "", "child": None}, "at")
         if not isinstance(given, (tuple, list)) or len(given) != 3:
@@ -212,33 +213,34 @@ class BodySeries(Part):
 
     @property
     def rigidity_stress(self) -> Floats:
-        """What keeps the body rigid, N m, along its directors, shape (n, 3, 3): tension is positive.
+        """Volume integral of the stress that keeps the body rigid, N m, along its directors, shape (n, 3, 3);
+        tension positive.
 
-        The second Piola-Kirchhoff stress summed up over the body, from the equations of motion, after the instant
-        where loads jump; zero for point masses, nan where joints lose rank. In closed loops with redundant joints it
-        is one of many, of the least reactions."""
+        Second Piola-Kirchhoff stress integrated over the body, from the equations of motion; just after a jump of a
+        load; zero for point masses, nan where joints lose rank. In closed loops with redundant joints it is not
+        unique; it belongs to the smallest reactions."""
         return self._series._shaped(self._series._rigidity()["rigidity"][:, self._index])
 
     @property
     def mean_stress(self) -> Floats:
-        """:attr:`rigidity_stress` by the volume of the body's shape, Pa, shape (n, 3, 3); nan without a shape."""
+        """:attr:`rigidity_stress` divided by the volume of the body's shape, Pa, shape (n, 3, 3); nan without a shape."""
         stress: Floats = self.rigidity_stress / self._series._result.body_volumes()[self._index]
         stress.flags.writeable = False
         return stress
 
     @property
     def position_error(self) -> Floats:
-        """Estimated, of the centre of mass, m, shape (n,). nan between element ends and without an estimate."""
+        """Estimated error of the centre of mass, m, shape (n,). nan between element ends and without an estimate."""
         return self._series._estimate("position", self._index, self._series._length())
 
     @property
     def orientation_error(self) -> Floats:
-        """Estimated, rad, shape (n,); 0 for point masses. nan likewise."""
+        """Estimated orientation error, rad, shape (n,); 0 for point masses, nan like :attr:`position_error`."""
         return self._series._estimate("orientation", self._index)
 
     @property
     def velocity_error(self) -> Floats:
-        """Estimated, of the centre of mass, m/s, shape (n,). nan likewise."""
+        """Estimated velocity error of the centre of mass, m/s, shape (n,); nan like :attr:`position_error`."""
         return self._series._estimate("velocity", self._index)
 
 
@@ -348,12 +350,14 @@ class JointSeries(Part):
 
     @property
     def force(self) -> Floats:
-        """Of the joint on its second body, N, world axes, shape (n, 3). Where a load jumps, afterwards."""
+        """Reaction force on the second body, N, world axes, shape (n, 3). At a jump of a load, the value just after
+        it."""
         return self._get("force")
 
     @property
     def torque(self) -> Floats:
-        """Of the joint on its second body about the joint point, N m, world axes, shape (n, 3). Likewise."""
+        """Reaction torque on the second body about the joint point, N m, world axes, shape (n, 3); at jumps like
+        :attr:`force`."""
         return self._get("torque")
 
     @property
@@ -368,22 +372,23 @@ class JointSeries(Part):
 
     @property
     def unique(self) -> bool:
-        """False: other joints of a closed loop could carry part of the reactions; these are the least."""
+        """False if other joints of a closed loop could carry part of the reactions; the smallest ones are given."""
         return bool(np.all(self._series._joints()["is_unique"][:, self._index] != 0))
 
     @property
     def bounded(self) -> bool:
-        """False: the joints lose rank at some instant; reactions are nan there."""
+        """False if the joints lose rank at some time; reactions are nan there."""
         return bool(np.all(self._series._joints()["is_bounded"][:, self._index] != 0))
 
     @property
     def reaction_error(self) -> Floats:
-        """Estimated, relative to the largest reaction of the run, shape (n,). nan where it is not known."""
+        """Estimated reaction error, relative to the largest reaction of the run, shape (n,). nan where it is not
+        known."""
         return self._series._estimate("reaction", self._index)
 
 
 class ReadingSeries(Part):
-    """What a load or a sensor tells along a motion: its readings are attributes, and items."""
+    """Readings of a load or a sensor along a motion, as attributes and as items."""
 
     def __init__(self, series: Series, name: str, index: int, first: int, readings: list[tuple[str, str]]) -> None:
         super().__init__(series, name, index)
@@ -414,7 +419,7 @@ class ReadingSeries(Part):
 
 
 class LoadSeries(ReadingSeries):
-    """A load along a motion: what it does, and its ``power`` (W) on the bodies."""
+    """A load along a motion: its readings, and its ``power`` (W) on the bodies."""
 
 
 class SensorSeries(ReadingSeries):
@@ -428,7 +433,7 @@ def _spaced(unit: str) -> str:
 
 
 class Parts(Mapping[str, _T], Generic[_T]):
-    """Bodies (joints, loads, sensors) of a result by name. Iterating gives names."""
+    """Bodies (joints, loads, sensors) of a result by name. Iteration yields names."""
 
     def __init__(self, kind: str, names: list[str], make: Callable[[int], _T]) -> None:
         self._kind, self._names, self._make = kind, names, make

@@ -22,7 +22,7 @@ class RestBody(NamedTuple):
     """A body in equilibrium."""
 
     name: str
-    """What the model calls it."""
+    """Its name in the model."""
     position: Floats
     """Of the reference point, m, world, shape (3,)."""
     quaternion: Floats
@@ -33,7 +33,7 @@ class _Coordinates:
     """A joint whose coordinates are attributes."""
 
     name: str
-    """What the model calls it."""
+    """Its name in the model."""
     coordinates: Mapping[str, Any]
     """By name."""
 
@@ -59,7 +59,7 @@ class RestJoint(_Coordinates):
     torque: Floats
     """Of the joint on its second body about the joint point, N m, world axes, shape (3,)."""
     unique: bool
-    """False: other joints of a closed loop could carry part of the reactions; these are the least."""
+    """False if other joints of a closed loop could carry part of the reactions; the smallest ones are given."""
 
     def __init__(self, name: str, coordinates: Mapping[str, float], force: Floats, torque: Floats, unique: bool) -> None:
         self.name, self.coordinates, self.force, self.torque, self.unique = name, coordinates, force, torque, unique
@@ -94,7 +94,7 @@ class _ByName:
 
 
 class Equilibrium(_ByName):
-    """Where a mechanism rests, by :meth:`Model.find_equilibrium`. Bodies and joints by name: ``rest["rod"]``.
+    """Static equilibrium, returned by :meth:`Model.find_equilibrium`. Bodies and joints by name: ``rest["rod"]``.
 
     Example:
         >>> import livens as lv
@@ -116,42 +116,42 @@ class Equilibrium(_ByName):
 
     @property
     def status(self) -> str:
-        """``stable``, ``neutral`` (nothing restores some directions), ``unstable`` or ``no equilibrium``."""
+        """``stable``, ``neutral`` (no restoring force in some directions), ``unstable`` or ``no equilibrium``."""
         return str(self._found["status"])
 
     @property
     def message(self) -> str:
-        """Why none was found; empty if one was."""
+        """Reason why no equilibrium was found; empty otherwise."""
         return str(self._found["message"])
 
     @property
     def notes(self) -> list[str]:
-        """What is worth knowing: redundant rows, .."""
+        """Notes, such as redundant constraints."""
         return list(self._found["notes"])
 
     @property
     def t(self) -> float:
-        """The instant at which loads and drives are held, s: the start of time."""
+        """The time at which loads and drives are held, s: the initial time."""
         return float(self._found["t"])
 
     @property
     def degrees_of_freedom(self) -> int:
-        """What the joints leave free."""
+        """Number of degrees of freedom."""
         return int(self._found["degrees_of_freedom"])
 
     @property
     def n_unstable(self) -> int:
-        """Directions in which small motions grow."""
+        """Number of directions in which small motions grow."""
         return int(self._found["n_unstable"])
 
     @property
     def n_neutral(self) -> int:
-        """Directions in which nothing restores."""
+        """Number of directions without a restoring force."""
         return int(self._found["n_neutral"])
 
     @property
     def nit(self) -> int:
-        """Steps of the search."""
+        """Number of steps of the search."""
         return int(self._found["iterations"])
 
     @property
@@ -196,7 +196,7 @@ class Equilibrium(_ByName):
 
 
 class EquilibriumError(RuntimeError):
-    """Small motions were asked for of a mechanism that does not come to rest.
+    """Linearisation of a mechanism that has no equilibrium.
 
     Example:
         >>> import livens as lv
@@ -221,10 +221,10 @@ class EquilibriumError(RuntimeError):
 
 
 class ModeBody(NamedTuple):
-    """How a body goes in each mode. Complex, since parts may lag behind each other."""
+    """Motion of a body in each mode; complex, since components may differ in phase."""
 
     name: str
-    """What the model calls it."""
+    """Its name in the model."""
     displacement: Complexes
     """Of the reference point, m, world axes, shape (n, 3)."""
     rotation: Complexes
@@ -232,7 +232,7 @@ class ModeBody(NamedTuple):
 
 
 class ModeJoint(_Coordinates):
-    """How a joint goes in each mode; its coordinates are attributes, too, complex, shape (n,)."""
+    """Motion of a joint in each mode; its coordinates are attributes, complex, shape (n,)."""
 
     coordinates: Mapping[str, Complexes]
     """By name: amplitudes, rad or m, shape (n,)."""
@@ -249,11 +249,11 @@ def _complex(pairs: Floats) -> Complexes:
 
 
 class Modes(_ByName):
-    """Small motions e^(s t) about a rest, by ascending ``|s|``; see :meth:`Model.vibration_modes`.
+    """Small motions e^(s t) about an equilibrium, by ascending ``|s|``; see :meth:`Model.vibration_modes`.
 
-    Of a conjugate pair the one with the positive imaginary part is there. Shapes are scaled so that the largest
-    displacement, over the model's length, or rotation of a body is 1, and turned so that it is real and positive.
-    Bodies and joints by name: ``modes["rod"].displacement[0]`` is that of the slowest mode.
+    Of a conjugate pair, only the root with the positive imaginary part is listed. Shapes are scaled so that the
+    largest rotation of a body, or displacement divided by the model length, is 1, real and positive. Bodies and
+    joints by name: ``modes["rod"].displacement[0]`` belongs to the slowest mode.
     """
 
     def __init__(self, found: Mapping[str, Any]) -> None:
@@ -276,7 +276,8 @@ class Modes(_ByName):
 
     @property
     def damping_ratio(self) -> Floats:
-        """``-Re s`` over ``|s|``, relative, shape (n,): 0 undamped, 1 where it dies without a vibration, negative where it grows."""
+        """``-Re s`` over ``|s|``, relative, shape (n,): 0 undamped, 1 for decay without vibration, negative if it
+        grows."""
         size = self.frequency
         return np.asarray(np.where(size > 0, -self.s.real / np.where(size > 0, size, 1), 0) + 0.0)
 
@@ -304,9 +305,10 @@ class Modes(_ByName):
 
 
 class StateMatrices(NamedTuple):
-    """x' = A x + B u, y = C x + D u about a rest; x are 2 n amplitudes of small motions and their rates.
+    """x' = A x + B u, y = C x + D u about an equilibrium; x holds the n amplitudes of small motions and their
+    rates.
 
-    ``scipy.signal.StateSpace(*matrices[:4])``, ``control.ss(*matrices[:4])`` take them as they are.
+    ``scipy.signal.StateSpace(*matrices[:4])`` and ``control.ss(*matrices[:4])`` accept them.
     """
 
     A: Floats
@@ -324,10 +326,10 @@ class StateMatrices(NamedTuple):
 
 
 class Linearisation:
-    """M q'' + C q' + K q = forces along q, about a rest; made by :meth:`Model.linearise`.
+    """M q'' + C q' + K q = forces along q, about an equilibrium; returned by :meth:`Model.linearise`.
 
     q are the amplitudes of the n small motions that all joints allow, orthonormal in the mass metric (M = 1
-    unless an inertia is singular). Drives and loads that depend on time are held at the instant.
+    unless an inertia is singular). Drives and loads that depend on time are held at their current values.
     """
 
     def __init__(self, linear: Any) -> None:
@@ -346,12 +348,12 @@ class Linearisation:
 
     @property
     def n_unstable(self) -> int:
-        """Directions in which small motions grow."""
+        """Number of directions in which small motions grow."""
         return int(self._stability["n_unstable"])
 
     @property
     def n_neutral(self) -> int:
-        """Directions in which nothing restores."""
+        """Number of directions without a restoring force."""
         return int(self._stability["n_neutral"])
 
     @property
@@ -373,17 +375,17 @@ class Linearisation:
         return stiffness
 
     def vibration_modes(self) -> Modes:
-        """All n of them, and more of a damped system where pairs of real s take the place of vibrations."""
+        """All n modes; a damped system has more if pairs of real s replace vibrations."""
         return Modes(self._linear.modes())
 
     def state_matrices(self, inputs: Sequence[str], outputs: Sequence[str]) -> StateMatrices:
-        """For the design of controllers.
+        """State matrices for controller design.
 
         Args:
             inputs: ``"JOINT.angle"`` and ``"JOINT.displacement"``, a generalised force along the coordinate
                 (N m or N), and ``"BODY.x"``, ``"BODY.y"``, ``"BODY.z"``, a force at the reference point (N).
             outputs: the same names: the coordinate (rad or m), the position of the reference point (m), as
-                deviations from the rest; with ``_rate`` behind them their rates.
+                deviations from the equilibrium; append ``_rate`` for their rates.
 
         Raises:
             InputError: ``no-such-port``.

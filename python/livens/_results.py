@@ -26,7 +26,7 @@ _LARGEST_INLINE = 4_000_000   # characters of a page inside a notebook
 
 
 class Solution(Series):
-    """A solved motion, at element ends, where it is most accurate; ``sol(t)`` has it at any instant.
+    """A solved motion at element ends, where it is most accurate; ``sol(t)`` evaluates it at any time.
 
     Example:
         >>> import livens as lv
@@ -85,13 +85,13 @@ class Solution(Series):
     # Peaks.
 
     def peak(self, name: str, *, unit: str | Sequence[str] | None = None) -> Peak:
-        """The value that is farthest from zero, and its instant, found on the motion and not among samples.
+        """The value farthest from zero and its time, searched on the motion, not among samples.
 
-        Every element is searched on the polynomials, and each peak that may be the largest is refined by solving
-        shortened elements, in the full order of the method. Jumps are seen from both sides.
+        The polynomials of every element are searched, and each candidate is refined by solving shortened elements,
+        to the full order of the method. Both sides of every jump are considered.
 
         Args:
-            name: ``"pivot.force"`` (of a vector the magnitude), ``"rod.position.z"``, ``"pivot.angle"``, ``"energy"``.
+            name: ``"pivot.force"`` (the magnitude of a vector), ``"rod.position.z"``, ``"pivot.angle"``, ``"energy"``.
             unit: ``"deg"``, ``"kN"``, ..; default SI.
 
         Raises:
@@ -109,13 +109,13 @@ class Solution(Series):
         return self.extremes(name, unit=unit).peak
 
     def extremes(self, name: str, *, unit: str | Sequence[str] | None = None) -> Extremes:
-        """The least and the largest value, and their instants; see :meth:`peak`."""
+        """The smallest and the largest value and their times; see :meth:`peak`."""
         return next(iter(found_extremes(self._result, (name,), unit).values()))
 
     def peaks(self, *names: str, unit: str | Sequence[str] | None = None) -> dict[str, Extremes]:
         """Extremes of the arrays named, or of all joints, loads, sensors and energies, as ``livens peaks`` prints them.
 
-        Where one is no number at some instant, all four are nan.
+        If a quantity does not exist at some time, all four are nan.
         """
         return found_extremes(self._result, names, unit)
 
@@ -133,69 +133,69 @@ class Solution(Series):
 
     @property
     def message(self) -> str:
-        """One sentence for people; empty where there is nothing to say."""
+        """One sentence on the outcome; may be empty."""
         return str(self._result.message)
 
     @property
     def reasons(self) -> list[str]:
-        """Why a motion is suspect."""
+        """Reasons why the motion is suspect."""
         return list(self._result.reasons)
 
     @property
     def notes(self) -> list[str]:
-        """What is worth knowing: redundant rows, divided elements, .."""
+        """Notes, such as redundant constraints or divided elements."""
         return list(self._result.notes)
 
     @property
     def title(self) -> str:
-        """Of the model."""
+        """Title of the model."""
         return str(self._result.title)
 
     @property
     def method(self) -> str:
-        """What was taken: ``"lobatto(7)"``."""
+        """The method used, such as ``"lobatto(7)"``."""
         return str(self._result.method)
 
     @property
     def figures(self) -> dict[str, float | int | None]:
-        """All single numbers of the run, as files have them; ``None``: not known. See docs/results.md."""
+        """All figures of the run, with the names of the result file; ``None``: not known. See docs/results.md."""
         return dict(self._result.figures)
 
     @property
     def options(self) -> dict[str, Any]:
-        """What was solved, with all defaults: time, method, conditions."""
+        """All options including defaults: time, method, conditions."""
         return dict(json.loads(self._result.resolved))
 
     @property
     def n_elements(self) -> int:
-        """Time elements solved."""
+        """Number of time elements."""
         return len(self._result.t) - 1
 
     @property
     def nfev(self) -> int:
-        """Evaluations of the equations at a node, in the motion."""
+        """Number of evaluations of the equations at a node, in the final motion."""
         return int(self.figures["evaluations"] or 0)
 
     @property
     def nit(self) -> int:
-        """Newton iterations."""
+        """Number of Newton iterations."""
         return int(self.figures["newton_iterations"] or 0)
 
     @property
     def nlu(self) -> int:
-        """Factorisations of tangents."""
+        """Number of factorisations of tangent matrices."""
         return int(self.figures["factorisations"] or 0)
 
     @property
     def seconds(self) -> float:
-        """Wall time of the solution, s; that of the estimate of its error is not counted. 0 if it was loaded."""
+        """Wall time of the solution, s, without the error estimate; 0 for a loaded solution."""
         return float(self._result.solve_seconds)
 
     # Beside the series.
 
     @property
     def output(self) -> Floats:
-        """The output times that were asked for, s, shape (m,)."""
+        """The output times of the model, s, shape (m,)."""
         output: Floats = self._result.output
         return output
 
@@ -216,39 +216,39 @@ class Solution(Series):
 
     @property
     def work(self) -> Floats:
-        """Of loads without potential and of drives, since the start, J, shape (n,)."""
+        """Work of drives and of loads without potential since the start, J, shape (n,)."""
         return self._balance("work")
 
     @property
     def drift(self) -> Floats:
-        """Energy less work less what it was at the start, absolute, J, shape (n,)."""
+        """Energy error: abs(energy - work - initial energy), J, shape (n,)."""
         return self._balance("energy_drift")
 
     @property
     def linear_momentum(self) -> Floats:
-        """Of all bodies, kg m/s, world, shape (n, 3)."""
+        """Linear momentum of all bodies, kg m/s, world, shape (n, 3)."""
         return self._balance("linear_momentum")
 
     @property
     def angular_momentum(self) -> Floats:
-        """Of all bodies about the world's origin, kg m^2/s, world, shape (n, 3)."""
+        """Angular momentum of all bodies about the world origin, kg m^2/s, world, shape (n, 3)."""
         return self._balance("angular_momentum")
 
     @property
     def violation(self) -> float:
-        """Largest violation of a constraint at nodes, each by its length."""
+        """Largest constraint violation at nodes, each relative to its scale."""
         value = self.figures["max_constraint_violation"]
         return float("nan") if value is None else float(value)
 
     @property
     def error(self) -> float:
-        """Largest estimated error of positions (in lengths of the model) and orientations (rad); nan: not known."""
+        """Largest estimated error of positions (in model lengths) and orientations (rad); nan: not known."""
         value = self.figures["estimated_error"]
         return float("nan") if value is None else float(value)
 
     @property
     def growth(self) -> Floats:
-        """By how much a perturbation of the start has grown, shape (n,) or (0,) where it was not asked for."""
+        """Growth factor of an initial perturbation, shape (n,); shape (0,) if it was not measured."""
         growth: Floats = self._result.growth
         return growth
 
@@ -260,7 +260,7 @@ class Solution(Series):
 
     @property
     def model(self) -> Model:
-        """The model that was solved, with its time and method, read again from the text in the result."""
+        """The model that was solved, with its time and method, read from the scenario text in the result."""
         from ._load import load
         self._refuse_functions("read again")
         return load(text=self._result.scenario_text, check=False)
@@ -278,13 +278,14 @@ class Solution(Series):
                         help="take arrays or to_xarray() of the result")
 
     def save(self, file: str | os.PathLike[str], *, force: bool = False) -> None:
-        """Writes a result file, the program's bytes: classic NetCDF with scenario and checksums.
+        """Writes a result file, the same bytes as the program: classic NetCDF with scenario and checksums.
 
-        Whatever happens, the file is the old one or the new one. ``livens info``, xarray and MATLAB read it.
+        The file is replaced as a whole: it is either the old or the new one. ``livens info``, xarray and MATLAB
+        read it.
 
         Args:
             file: Its name.
-            force: An older result is replaced, any other file only if this is true; never what the model was read from.
+            force: Whether to replace files other than older results; never the file that the model was read from.
 
         Raises:
             OSError: it cannot be written; ``FileExistsError`` if another file would be lost.
@@ -298,14 +299,14 @@ class Solution(Series):
         self._result.save(name)
 
     def report(self, file: str | os.PathLike[str], other: Solution | None = None, *, force: bool = False) -> None:
-        """Writes one page for any browser: the motion in space, linked plots, and whether it is right.
+        """Writes one HTML page: the motion in 3D, linked plots, and quality figures.
 
-        The page needs no network and no livens where it is opened; the program's ``livens report`` writes the same.
+        The page needs neither network nor livens to be opened; ``livens report`` writes the same page.
 
         Args:
             file: ends in ``.html``.
             other: a second solution, shown beside this one.
-            force: An older page is replaced, any other file only if this is true.
+            force: Whether to replace files other than older pages.
 
         Raises:
             OSError: it cannot be written; ``FileExistsError`` if another file would be lost.
@@ -337,26 +338,26 @@ class Solution(Series):
                duration: float | None = None, start: float | None = None, end: float | None = None,
                view: str = "fitted", dark: bool = False, names: bool = False, clock: bool = False,
                force: bool = False) -> None:
-        """Writes the motion for other programs, or as a picture or video, by the ending of the name or by ``format``.
+        """Exports the motion for other programs, or as a picture or video, in the format given by the file ending or by ``format``.
 
-        Videos and pictures are drawn by Chromium or Chrome without a window, which must be on this machine.
+        Videos and pictures need Chromium or Chrome on this machine, which draws them without a window.
 
         Args:
             file: Its name.
-            format: ``"csv"``, ``"npz"``, ``"gltf"``, ``"pvd"``, ``"webm"``, ``"gif"``, ``"png"``, ``"svg"``, as
-                ``livens export`` has them.
-            at: Of CSV, as :meth:`to_dataframe` has it.
-            unit: Of CSV, as :meth:`to_dataframe` has it: ``"deg"``.
-            size: Of pictures and videos, width and height in pixels.
-            fps: Frames per second of a video; default 30, of a GIF 20.
-            duration: Of a video, s; default: that of the motion, 8 s where it is under 2 s or over 40 s.
-            start: Instant of a still, or the first of a video, s; default: the start of the motion.
-            end: Last instant of a video, s.
+            format: ``"csv"``, ``"npz"``, ``"gltf"``, ``"pvd"``, ``"webm"``, ``"gif"``, ``"png"``, ``"svg"``, as for
+                ``livens export``.
+            at: Times of CSV rows; see :meth:`to_dataframe`.
+            unit: Units of CSV columns, such as ``"deg"``; see :meth:`to_dataframe`.
+            size: Width and height of pictures and videos in pixels.
+            fps: Frames per second of a video; default 30, for a GIF 20.
+            duration: Duration of a video, s; default: that of the motion, or 8 s if that is under 2 s or over 40 s.
+            start: Time of a still, or first time of a video, s; default: the start of the motion.
+            end: Last time of a video, s.
             view: ``"fitted"``, ``"front"``, ``"side"`` or ``"top"``.
-            dark: Dark colours.
-            names: Names of bodies are written beside them.
-            clock: The time is written into the picture.
-            force: An older export is replaced, any other file only if this is true.
+            dark: Whether to use dark colours.
+            names: Whether to label bodies with their names.
+            clock: Whether to show the time.
+            force: Whether to replace files other than older exports.
 
         Raises:
             OSError: it cannot be written; ``FileExistsError`` if another file would be lost; no browser is found.
@@ -430,7 +431,7 @@ class Solution(Series):
 
 
 def _last_from_before(times: Floats, ends: Floats) -> Floats:
-    """Nothing follows the end of a motion: what is told there is what was."""
+    """Nothing follows the end of a motion: values there are those just before it."""
     return np.where(times == ends[-1], 1.0, 0.0) if len(ends) > 1 else np.zeros(len(times))
 
 
@@ -442,7 +443,7 @@ def load_solution(file: str | os.PathLike[str]) -> Solution:
     """Reads a result file, written by :meth:`Solution.save` or the program.
 
     Raises:
-        OSError: it cannot be read (``FileNotFoundError``), or is no result of livens, or damaged: ``e.code``.
+        OSError: it cannot be read (``FileNotFoundError``), is no livens result, or is damaged; see ``e.code``.
     """
     name = file_name(file)
     with open(name, "rb"):   # Python's own words for what is not there

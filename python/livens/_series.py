@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 
 class Series:
-    """A motion at instants: what :class:`Solution` is at element ends, and ``sol(t)`` at others.
+    """A motion at given times: :class:`Solution` has element ends, ``sol(t)`` any other times.
 
-    Arrays are read-only and stay valid as long as they are used. SI units; world axes unless said.
+    Arrays are read-only and stay valid as long as they are used. SI units; world axes unless noted.
     """
 
     def __init__(self, result: Any, times: Floats | None, is_single: bool = False,
@@ -61,7 +61,7 @@ class Series:
         return self._groups[name]
 
     def _seen(self, group: dict[str, Floats]) -> dict[str, Floats]:
-        """What is told of both sides of an instant, from the side that it is seen from."""
+        """Values on both sides of an instant, from the side that it is seen from."""
         if not self._before.any():
             return group
         for name in [name for name in group if name + "_before" in group]:
@@ -134,7 +134,7 @@ class Series:
 
     @property
     def joints(self) -> Parts[JointSeries]:
-        """All joints by name, and the drives behind them."""
+        """All joints by name, followed by the drives."""
         joints = self._result.joints
 
         def make(i: int) -> JointSeries:
@@ -217,7 +217,7 @@ class Series:
         """An ``xarray.Dataset`` with dimensions ``time``, ``body``, ``joint``, ``xyz``; units in ``attrs``.
 
         Args:
-            at: As :meth:`to_dataframe` has it.
+            at: See :meth:`to_dataframe`.
 
         Needs xarray: ``pip install 'livens[xarray]'``.
         """
@@ -226,29 +226,29 @@ class Series:
 
     def to_dataframe(self, *names: str | Entry, at: str | None = None,
                      unit: str | Sequence[str] | None = None) -> pandas.DataFrame:
-        """A ``pandas.DataFrame`` of the parts named (default: all bodies), a row an instant.
+        """A ``pandas.DataFrame`` of the given parts (default: all bodies), one row per time.
 
         Columns are ``"rod.position.x"``, the index is ``t``; ``frame.attrs["units"]`` has the units. Needs pandas:
         ``pip install 'livens[pandas]'``.
 
         Args:
-            *names: Of bodies, joints, loads, sensors.
-            at: Of a solution: ``"dense"``, enough instants of every element for smooth curves (where something
-                jumps, one row before and one after); ``"output"``, the output times; ``"ends"``, element ends.
-                Default: ``"output"`` where output times were asked for, else ``"dense"``.
-            unit: ``"deg"``, ``"mm"``, or several, for the columns that they fit.
+            *names: Names of bodies, joints, loads, sensors.
+            at: For a solution: ``"dense"``, enough times in every element for smooth curves (at jumps, one row
+                before and one after); ``"output"``, the output times; ``"ends"``, element ends. Default:
+                ``"output"`` if the model has output times, else ``"dense"``.
+            unit: ``"deg"``, ``"mm"``, or several units, applied to columns of the same dimension.
         """
         from ._export import to_dataframe
         return to_dataframe(self._chosen(at, True), names, unit)
 
     def plot(self, *what: str, at: str | None = None, unit: str | Sequence[str] | None = None,
              **keywords: Any) -> npt.NDArray[Any]:
-        """Draws arrays over time, one axis each, with units; returns the axes.
+        """Plots quantities over time, one axis each, with units; returns the axes.
 
         Args:
             *what: ``"rod.position"``, ``"pivot.force"``, ``"energy"``; default: energies.
-            at: Of a solution: ``"dense"`` (default), ``"output"`` or ``"ends"``; see :meth:`to_dataframe`.
-            unit: ``"deg"``, ``"rpm"``, ``"mm"``, ``"kN"``, or several, for the axes that they fit.
+            at: For a solution: ``"dense"`` (default), ``"output"`` or ``"ends"``; see :meth:`to_dataframe`.
+            unit: ``"deg"``, ``"rpm"``, ``"mm"``, ``"kN"``, or several units, applied to axes of the same dimension.
             **keywords: For ``Axes.plot``.
 
         Needs matplotlib: ``pip install 'livens[plot]'``.

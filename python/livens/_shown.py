@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Peak(NamedTuple):
-    """A value of the motion and its instant: ``value, t = sol.peak("pivot.force")``.
+    """A value of the motion and its time: ``value, t = sol.peak("pivot.force")``.
 
     Example:
         >>> import livens as lv
@@ -25,13 +25,13 @@ class Peak(NamedTuple):
     """
 
     value: float
-    """In the unit of the array, or the one that was asked for."""
+    """In SI units, or in the unit requested."""
     t: float
     """s."""
 
 
 class Extremes(NamedTuple):
-    """The least and the largest value of a motion, with their instants.
+    """The smallest and the largest value of a motion, with their times.
 
     Example:
         >>> import livens as lv
@@ -40,7 +40,7 @@ class Extremes(NamedTuple):
     """
 
     min: float
-    """In the unit of the array, or the one that was asked for."""
+    """In SI units, or in the unit requested."""
     t_min: float
     """s."""
     max: float
@@ -50,7 +50,7 @@ class Extremes(NamedTuple):
 
     @property
     def peak(self) -> Peak:
-        """What is farther from zero of both, with its sign."""
+        """The one farther from zero, with its sign."""
         return Peak(self.min, self.t_min) if -self.min > self.max else Peak(self.max, self.t_max)
 
 

@@ -42,33 +42,33 @@ def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, el
           output: Number | Vector | None = None, breaks: Literal["from_loads", "ignore"] | None = None,
           method: Method | str | None = None, start: End = None, end: End = None, progress: ProgressArgument = False,
           strict: bool = False, **options: Unpack[MethodOptions]) -> Solution:
-    """Solves a model's whole motion.
+    """Solves the motion of a model.
 
-    What is not given is what the model's own tables ``[time]``, ``[method]``, ``[start]``, ``[end]`` say, or
-    their defaults: to an accuracy of 1e-6, by the method ``auto``.
+    Arguments that are not given follow from the model's tables ``[time]``, ``[method]``, ``[start]``, ``[end]``, or
+    their defaults: accuracy 1e-6, method ``auto``.
 
     Args:
-        model: What is solved; it is not changed.
-        time: Its end, or (start, end), s.
-        accuracy: Largest error of positions, in lengths of the model, and of orientations, in rad. Elements and,
-            unless stated, the degree follow from it. Default: 1e-6.
-        elements: Instead: so many time elements of equal length.
-        output: Interval between output times, or their ascending list, s: they become element ends.
+        model: The model to solve; it is not changed.
+        time: Final time, or (start, end), s.
+        accuracy: Permitted error of positions, in model lengths, and of orientations, in rad. The elements, and the
+            degree unless given, follow from it. Default: 1e-6.
+        elements: Number of time elements of equal length, instead of ``accuracy``.
+        output: Interval between output times, or an ascending list of them, s; they become element ends.
         breaks: Whether elements end where loads jump (``"from_loads"``, default) or not (``"ignore"``).
         method: ``lv.Lobatto(7)``, ``lv.Radau()``, ``lv.Mixed(..)``, .., or a word: ``"radau"``.
-        start: What is known at the start, by default the state: a word, or ``lv.positions({..})``, ..
-        end: What is known at the end, by default nothing. Two halves must be known in all.
-        progress: True for a line of progress, or a function.
-        strict: Raise :class:`SolveError` with what there is, instead of warning, unless all is well.
-        **options: What all methods have: ``tolerance``, ``max_iterations``, ``estimate``, ``growth``,
+        start: What is prescribed at the initial time, by default the state: a word, or ``lv.positions({..})``, ..
+        end: What is prescribed at the final time, by default nothing. Two halves must be prescribed in all.
+        progress: True for a progress line, or a function.
+        strict: Whether to raise :class:`SolveError` with the solution so far instead of issuing a warning.
+        **options: Options of all methods: ``tolerance``, ``max_iterations``, ``estimate``, ``growth``,
             ``condition``.
 
     Returns:
-        The solution, also if it is not a good one: then ``success`` is False, and :class:`SolveWarning` has been
-        warned of. Ctrl-C ends it with ``KeyboardInterrupt``. Other threads run meanwhile.
+        The solution. If it did not converge or is suspect, ``success`` is False and a :class:`SolveWarning` has
+        been issued. Ctrl-C raises ``KeyboardInterrupt``. Other threads can run in the meantime.
 
     Raises:
-        InputError: what is wrong with model or arguments.
+        InputError: for errors in the model or the arguments.
         SolveError: with ``strict=True``.
 
     Example:
@@ -102,30 +102,31 @@ def solve_many(models: Model | Iterable[Model], time: Time = None, *,
                breaks: Literal["from_loads", "ignore"] | None = None, method: Method | str | None = None,
                start: End = None, end: End = None, progress: bool | Callable[[int, int], Any] = False,
                strict: bool = False, **options: Unpack[MethodOptions]) -> list[Solution]:
-    """Solves many models, several at a time; no bit of a result depends on how many.
+    """Solves many models, several at a time; results have the same bits for any number of threads.
 
     Args:
-        models: Models, or one of which ``variations`` say what is changed.
-        time: Its end, or (start, end), s; this one and all that are not explained here as :func:`solve` has them.
-        variations: For each solution what is assigned before: ``{"crank.mass": 2.6, "return.stiffness": 800}``;
-            ``"gravity"`` and ``"time.end"`` work, too.
-        threads: 0: as many as there are processors.
-        progress: True for a line, or a function that is called with (done, all).
-        accuracy: Largest error of each.
-        elements: Instead: time elements of each.
-        output: Interval between output times, or their list, s.
-        breaks: Whether elements end where loads jump.
-        method: Of all of them.
-        start: What is known at the start.
-        end: What is known at the end.
-        strict: Raise :class:`SolveError` for the first that is not good; else one warning tells how many.
+        models: Models, or one model that ``variations`` modify.
+        time: Final time, or (start, end), s; this and other arguments without explanation: see :func:`solve`.
+        variations: For each solution, the assignments to make first: ``{"crank.mass": 2.6, "return.stiffness": 800}``;
+            ``"gravity"`` and ``"time.end"`` are possible, too.
+        threads: Number of threads; 0: one per processor.
+        progress: True for a progress line, or a function that is called with (done, all).
+        accuracy: Permitted error of each.
+        elements: Number of time elements of each, instead of ``accuracy``.
+        output: Interval between output times, or a list of them, s.
+        breaks: Whether elements end at jumps of loads.
+        method: Method for all of them.
+        start: What is prescribed at the initial time.
+        end: What is prescribed at the final time.
+        strict: Whether to raise :class:`SolveError` for the first that fails; otherwise one warning reports their
+            number.
         **options: ``tolerance``, ``estimate``, ..
 
     Returns:
         The solutions, in the order of models or variations.
 
     Raises:
-        InputError: what is wrong with the first that is wrong; nothing is solved if an assignment is wrong.
+        InputError: for the first model with an error; nothing is solved if an assignment fails.
 
     Example:
         >>> import livens as lv
@@ -322,7 +323,7 @@ def _given(model: Model, name: str, word: str) -> Table:
 
 
 def _moved(bodies: list[Table], condition: Condition, at: str) -> list[Table]:
-    """Bodies with what they have at an end of time."""
+    """States of bodies at the start or end of the motion."""
     names = [str(body.get("name")) for body in bodies]
     for name in condition.bodies:
         if name not in names:

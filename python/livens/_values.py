@@ -41,7 +41,7 @@ def _repr(name: str, keys: Mapping[str, Any]) -> str:
 class Shape:
     """A solid of constant density, for mass and inertia; made by :func:`box`, :func:`sphere`, ..
 
-    What it has beside the shape (``density`` or ``mass``) goes to the body.
+    Its ``density`` or ``mass`` is passed on to the body.
     """
 
     keys: Mapping[str, Any] = field(default_factory=dict)
@@ -53,7 +53,7 @@ class Shape:
 
 @dataclass(frozen=True, repr=False)
 class Method:
-    """How a motion is discretised: :class:`Lobatto`, :class:`Radau`, :class:`Mixed`, .."""
+    """An integration method: :class:`Lobatto`, :class:`Radau`, :class:`Mixed`, .."""
 
     family: str = ""
     """The word of the scenario."""
@@ -79,24 +79,24 @@ def _restored(kind: type[Method], family: str, keys: Mapping[str, Any]) -> Metho
 
 @dataclass(frozen=True)
 class Condition:
-    """What is known at one end of time; made by :func:`positions`, :func:`momenta`, :func:`state`."""
+    """What is prescribed at one end of the motion; made by :func:`positions`, :func:`momenta`, :func:`state`."""
 
     given: str
     """The word of the scenario."""
     bodies: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Keys of each body there."""
     coordinates: Sequence[Mapping[str, Any]] | None = None
-    """At the start, instead of what the model states of coordinates and their rates: those of joints that have
-    turned farther than bodies tell. None: the model's lead on from where the bodies are."""
+    """Initial values and rates of joint coordinates, instead of those of the model: full turns of joints do not
+    follow from the positions of bodies. None: those of the model are applied."""
 
 
 def positions(bodies: Mapping[str, Mapping[str, Any]] | None = None) -> Condition:
-    """Positions are known at an end of time: ``solve(m, 1, start="positions", end=lv.positions({...}))``.
+    """Prescribes positions at one end of the motion: ``solve(m, 1, start="positions", end=lv.positions({...}))``.
 
     Args:
-        bodies: For each body by name what it has there: ``position`` (m, world), one of ``quaternion``,
-            ``rotation_vector``, ``directors``, and velocities, which are a guess. At the start bodies have their
-            own, which these replace.
+        bodies: For each body by name a table with ``position`` (m, world), one of ``quaternion``,
+            ``rotation_vector``, ``directors``, and velocities, which serve as a first guess. At the start they
+            replace the values of the bodies.
 
     Example:
         >>> import livens as lv
@@ -110,12 +110,13 @@ def positions(bodies: Mapping[str, Mapping[str, Any]] | None = None) -> Conditio
 
 
 def momenta(bodies: Mapping[str, Mapping[str, Any]] | None = None) -> Condition:
-    """Momenta are known at an end of time: those of the positions and velocities stated; see :func:`positions`."""
+    """Prescribes momenta at one end of the motion, those of the given positions and velocities; see
+    :func:`positions`."""
     return Condition("momenta", dict(bodies or {}))
 
 
 def state(bodies: Mapping[str, Mapping[str, Any]] | None = None) -> Condition:
-    """Positions and velocities are known at an end of time; see :func:`positions`."""
+    """Prescribes positions and velocities at one end of the motion; see :func:`positions`."""
     return Condition("state", dict(bodies or {}))
 
 
@@ -124,8 +125,9 @@ def table(times: Vector, values: Vector | Matrix, interpolation: str | None = No
 
     Args:
         times: s, ascending, shape (n,).
-        values: One for each time, shape (n,), or (n, 3) for forces and torques; their unit is that of the load.
-        interpolation: ``"linear"`` (default) or ``"spline"``; drives always take splines, and no word here.
+        values: One per time, shape (n,), or (n, 3) for forces and torques; in the unit of the load.
+        interpolation: ``"linear"`` (default) or ``"spline"``; drives always use splines and do not
+            accept this argument.
 
     Example:
         >>> import livens as lv
@@ -160,16 +162,16 @@ def three(name: str, x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:
 def visual(shape: Shape, *, position: Vector | None = None, directors: Matrix | None = None,
            quaternion: Vector | None = None, rotation_vector: Vector | None = None,
            color: str | Vector | None = None, opacity: float | None = None) -> dict[str, Any]:
-    """A shape that is looked at alone, for ``visual=`` of a body or of :attr:`Model.world`.
+    """A shape that is only drawn, for ``visual=`` of a body or of :attr:`Model.world`.
 
     Args:
         shape: Without ``mass`` and ``density``.
-        position: Of its origin in coordinates of the body or the world, m, shape (3,).
-        directors: Its axes, one a row, shape (3, 3).
+        position: Position of its origin in body or world coordinates, m, shape (3,).
+        directors: Its axes, one per row, shape (3, 3).
         quaternion: (w, x, y, z) instead.
-        rotation_vector: Axis times angle, rad, instead.
-        color: A name of CSS, ``"#rrggbb"``, or red, green and blue from 0 to 1. Default: that of the body.
-        opacity: 1: nothing is seen through it.
+        rotation_vector: Axis times angle, rad, instead of the two above.
+        color: A CSS colour name, ``"#rrggbb"``, or red, green and blue from 0 to 1. Default: that of the body.
+        opacity: 1 is opaque.
 
     Example:
         >>> import livens as lv

@@ -255,7 +255,8 @@ void export_to(const Result& r, const std::string& format, const std::string& re
 {
     PictureOptions o;
     const auto take = [&](const char* name, auto& member) {
-        if (picture.contains(name)) member = nb::cast<std::remove_reference_t<decltype(member)>>(picture[name]);
+        if (picture.contains(name))
+            member = nb::cast<std::remove_reference_t<decltype(member)>>(picture[name]);
     };
     take("width", o.width);
     take("height", o.height);

@@ -14,7 +14,8 @@ built: its scripts, presets and build/release are links. HOME is this folder too
     sh        runs under `bash -eu`, with the program on the path; `<!-- exit: N -->` before it: ends with N. Stand-ins for what
               takes minutes or is not here: STAND_INS
     console   `$ COMMAND` and what it writes, on a terminal of 100 columns; colours are left out
-    python    with --python, in this interpreter, all blocks of a page one after the other
+    python    with --python, in this interpreter, all blocks of a page one after the other. With `<!-- with: NAME.toml -->`
+              before it, `m` is the model of that file, and must become the one that the block of TOML above makes of it
     cpp       compiled and run against the build tree; without a main() it is the inside of one. A first line `// NAME.cpp` names
               the file that it becomes for the blocks behind; `# CMakeLists.txt` that of `cmake`
     text      right behind one of these: what came out. Numbers may differ by one in the last digit that is shown, or by 1e-9
@@ -78,6 +79,7 @@ sbatch() {   # Slurm: each job of --array=A-B here, one after the other
 """
 DOCUMENTS = ("tutorial", "install", "joints", "python", "scenario", "program", "results", "performance", "paper", "trust", "theory",
              "examples", "notation", "validation", "architecture")
+TYPES = ("joints", "loads", "drives", "sensors")   # a page for each type
 ESCAPES = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)")
 NUMBER = re.compile(r"(?<![\w.])[-−]?\d+(?:\.\d*)?(?:e[-+]?\d+)?(?![\w])")
 ROUNDING = 1e-10
@@ -86,7 +88,7 @@ SECONDS = re.compile(r"(of motion in|in) [0-9.e-]+ s\b")
 
 def pages_of(root: pathlib.Path) -> list[pathlib.Path]:
     return [root / "README.md", root / "CONTRIBUTING.md", *(root / f"docs/{name}.md" for name in DOCUMENTS),
-            *sorted((root / "docs/howto").glob("*.md")), *sorted((root / "docs/coming_from").glob("*.md"))]
+            *(page for folder in ("howto", "coming_from", *TYPES) for page in sorted((root / "docs" / folder).glob("*.md")))]
 
 
 def same(shown: str, came: str) -> bool:
@@ -186,7 +188,7 @@ class Page:
         return "".join([*out, self.text[at:]])
 
     def lay_out(self, folder: pathlib.Path) -> None:
-        for example in (self.root / "examples").glob("*.toml"):
+        for example in (*(self.root / "examples").glob("*.toml"), *(self.root / "tests/docs").glob("*.toml")):
             shutil.copyfile(example, folder / example.name)
         for name in CHECKOUT:
             if (self.root / name).exists():
@@ -271,7 +273,11 @@ class Page:
             os.chdir(folder)
             os.environ["PATH"] = self.environment["PATH"]
             with contextlib.redirect_stdout(printed):
+                if key == "with":
+                    exec(f"import livens as lv\nm = lv.load({value!r})", self.space)
                 exec(compile(code, self.name, "exec"), self.space)
+                if key == "with":
+                    exec("assert m == lv.load('part.toml'), 'Python and TOML make different models:\\n' + m.to_toml()", self.space)
         except BaseException:
             self.fault(at, traceback.format_exc(limit=-1))
         finally:

@@ -10,6 +10,13 @@ if(LIVENS_BUILD_PROGRAM AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
     set_tests_properties(docs.blocks docs.blocks_refuses_faults PROPERTIES LABELS fast TIMEOUT 900 COST 100
                          ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>")
 
+    set(pages ${livens_python} -B ${PROJECT_SOURCE_DIR}/scripts/type_pages)
+    add_test(NAME docs.type_pages_are_current COMMAND ${pages} --check)
+    add_test(NAME docs.type_pages_refuse_faults COMMAND ${pages} --controls)
+    add_test(NAME docs.sketches_are_current COMMAND ${livens_python} -B ${PROJECT_SOURCE_DIR}/scripts/draw_loads --check)
+    set_tests_properties(docs.type_pages_are_current docs.type_pages_refuse_faults docs.sketches_are_current PROPERTIES LABELS fast TIMEOUT 300
+                         ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>")
+
     set(figures ${livens_python} -B ${CMAKE_CURRENT_LIST_DIR}/figures.py ${PROJECT_SOURCE_DIR} $<TARGET_FILE:livens>)
     if(TARGET reference)
         list(APPEND figures $<TARGET_FILE:reference>)

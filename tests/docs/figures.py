@@ -76,8 +76,7 @@ def largest_drifts(root, program):
 
 def kinds_of_joints(program):
     text = run(program, "schema", "--md")
-    row = re.search(r"^\| `type` \| ([^|]*)\|", text[text.index("## [[joint]]"):], re.M).group(1)
-    return set(re.findall(r'"(\w+)"', row))
+    return set(re.findall(r"^\| \[`(\w+)`\]\(joints/", text, re.M))
 
 
 def accuracies_of_tests(root):
@@ -210,10 +209,10 @@ def check_recorded(d):
         counts = [meshes[kind][key] for key in ("runs", "converged", "suspect", "not converged", "wrong", "false alarms")]
         d.says("docs/trust.md", f"| {title} | {' | '.join(map(str, counts))} |")
     d.says("docs/trust.md", " and ".join(f"{meshes[k]['wrong by a thousandth']} of {meshes[k]['converged']}" for k in ("examples", "others"))
-           + " converged runs would be found wrong")
-    d.says("docs/trust.md", f"without estimates {100 * meshes['pass without an estimate']:.0f} percent of the runs")
+           + " converged runs wrong")
+    d.says("docs/trust.md", f"Without estimates, {100 * meshes['pass without an estimate']:.0f} percent of the suspect runs")
     counts, largest = zip(*((meshes[k]["resolved"], meshes[k]["resolved, in estimates"]) for k in ("examples", "others")))
-    d.says("docs/trust.md", "Of all {} and {} resolved runs the largest true error was {:.2f} and {:.2f} estimates".format(*counts, *largest))
+    d.says("docs/trust.md", "Over all {} and {} runs of this kind, the largest true error was {:.2f} and {:.2f} estimates".format(*counts, *largest))
     for name, (error, estimate) in meshes["coarse"].items():
         d.holds(re.search(rf"`{name}` with [^`]*?{error:.1e} (?:off and estimated|and) {estimate:.1e}".replace("e-0", "e-"),
                           d.texts["docs/trust.md"]), f"docs/trust.md: {name} is {error:.1e} off, estimated {estimate:.1e}")
@@ -224,7 +223,7 @@ def check_recorded(d):
         d.says("docs/trust.md", f"| {title}: median, nine in ten, largest | {cells[0]} | {cells[1]} |")
     for words in record.work_rows(recorded["work"]):
         d.says("docs/trust.md", words)
-    d.says("docs/trust.md", f"`: {accuracies['bursts']} motions) no uniform mesh")
+    d.says("docs/trust.md", f"`: {accuracies['bursts']} motions): no uniform mesh")
     d.says("docs/trust.md", f"{100 * accuracies['estimates within 5']:.1f} percent")
     refused = {name: 100 * share for name, share in accuracies["refused"].items()}
     d.says("docs/trust.md", f"Refused were at most {refused['largest']:.0f} percent of a motion's elements, with bursts {refused['largest with bursts']:.0f}.")
@@ -236,7 +235,7 @@ def check_recorded(d):
     for words in record.reported_rows(recorded["scans"]):
         d.says("docs/trust.md", words)
     known = recorded["scans"]["reported"]
-    d.says("docs/trust.md", f"Of all {known['runs']} runs none is wrong; with the looks off {known['wrong without the looks']} are")
+    d.says("docs/trust.md", f"Of all {known['runs']} runs none is wrong; with `looks` off {known['wrong without the looks']} are")
     d.holds(known["wrong"] == 0, "docs/trust.md: reported cases are wrong")
     asked = sum(part["motions"] for part in parts) + accuracies["bursts"]
     d.says("docs/theory.md", f"of the {asked} motions of the scan {asked - accuracies['second tries']} need no second try")
@@ -347,7 +346,7 @@ STALE = [("README.md", "hold to 1e-15 of", "hold to 1e-17 of"), ("README.md", "b
          ("docs/joints.md", r"\| `slot` \|", "| `groove` |"), ("docs/validation.md", r"\| 0\.0(\d+) \|", r"| 0.1\1 |"),
          ("docs/examples.md", r"\| 1e-11 \|", "| 1e-15 |"), ("docs/examples.md", r"\| 2e-7 \|", "| 1e-7 |"), ("docs/trust.md", r"\| 2415 \| 1649", "| 2415 | 1650"),
          ("docs/trust.md", r"(\d) percent", r"\g<1>5 percent"), ("docs/trust.md", r"6\.4e-2", "6.3e-2"),
-         ("docs/trust.md", r"\| all \| 1000 \|", "| all | 1001 |"), ("docs/trust.md", "with the looks off ", "with the looks off 1"),
+         ("docs/trust.md", r"\| all \| 1000 \|", "| all | 1001 |"), ("docs/trust.md", "with `looks` off ", "with `looks` off 1"),
          ("docs/trust.md", r"\| 1\.04, 1\.", "| 1.02, 2."), ("docs/trust.md", r"was 1\.02 and", "was 1.03 and"),
          ("docs/theory.md", "0\\.8 percent of all", "0.7 percent of all"), ("docs/theory.md", "337 need no", "252 need no"), ("docs/trust.md", "with bursts 4", "with bursts 5"),
          ("changes/0006-the-fastest.md", "[\\d.]+ million instr", "8.1 million instr"), ("changes/0006-the-fastest.md", "32 to 45", "32 to 46"),

@@ -90,7 +90,7 @@ TEST(Events, AHingeLetsGo)
         for (const double error : told.reaction) EXPECT_LT(error, 1e-6) << "sides are not mixed";
         bool is_told = false;
         for (const std::string& note : s.solution.report.notes)
-            is_told = is_told || note.find("'hinge' lets go at 0.7 s") != std::string::npos;
+            is_told = is_told || note.find("'hinge' is released at 0.7 s") != std::string::npos;
         EXPECT_TRUE(is_told);
     }
     const Solved held = solved(pendulum("accuracy = 1e-10", ""));

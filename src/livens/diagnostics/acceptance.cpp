@@ -58,9 +58,8 @@ public:
         // Blamed on a law only where what it did unseen makes up half of the error.
         const bool is_law = estimate.unseen_load >= 0 && !(estimate.unseen < 0.5 * estimate.largest);
         reasons_.push_back(
-            "its estimated error is " + to_text(estimate.largest, 3) +
-            " (lengths of the model, or rad), of body '" + model.body_name(estimate.body) + "' at " +
-            to_text(estimate.time, 6) + " s, by " +
+            "its estimated error is " + to_text(estimate.largest, 3) + " (model lengths, or rad), of body '" +
+            model.body_name(estimate.body) + "' at " + to_text(estimate.time, 6) + " s, by " +
             (is_law ? "what the law of load '" +
                           model.loads()[static_cast<std::size_t>(estimate.unseen_load)].name +
                           "' does inside the element that ends at " + to_text(estimate.unseen_time, 6) +
@@ -73,8 +72,8 @@ public:
         const bool has_jump = jump > unsure_jump;
         if (!reasons_.empty() || !(error > acceptable_unsure_error) || !(has_jump || drift > error)) return;
         reasons_.push_back(
-            "its estimated error, " + to_text(error, 3) + ", may be too small: " +
-            "the time elements are too long, for the second solution as well (" +
+            "its estimated error, " + to_text(error, 3) +
+            ", may be too small: " + "the time elements are too long, for the second solution as well (" +
             (has_jump ? "velocity jump " + to_text(jump, 3) : "energy error " + to_text(drift, 3)) +
             "); use about twice as many, or an accuracy");
     }

@@ -120,5 +120,8 @@ double unit_of_length(const std::string& unit);
 /// The schema of scenarios: for editors (JSON Schema draft 2020-12) and for people (Markdown).
 std::string schema_json();
 std::string schema_markdown();
+/// The keys of one type, such as "joint.revolute"; empty for what is not in schema_types().
+std::string schema_markdown(std::string_view type);
+std::vector<std::string> schema_types();
 
 }   // namespace gnu::visibility("default")]]livens

@@ -101,7 +101,7 @@ void check_accuracy(const Conditions& given, const Span& span, const Method& met
     if (!(span.accuracy > 0) || !(span.accuracy <= 0.1))
         throw InputError({"accuracy-out-of-range", "time.accuracy", "the accuracy must lie between 0 and 0.1",
                           to_text(span.accuracy), "0 < accuracy <= 0.1",
-                          "it is an error, in lengths of the model and in rad", ""});
+                          "it is an error, in model lengths and in rad", ""});
     const auto refuse = [](const char* place, const std::string& why) {
         throw InputError({"accuracy-elements", place, "elements are not found for an accuracy here", "", "",
                           why, "give elements instead of the accuracy"});

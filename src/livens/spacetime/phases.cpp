@@ -227,10 +227,11 @@ public:
             for (std::size_t j = 0; j < at.size(); ++j) {
                 const Joint& joint = model_.joints()[j];
                 if (!(std::abs(joint.until - ends_[k]) <= gap_)) continue;
-                solution.report.notes.push_back(
-                    "'" + joint.name + "' lets go at " + to_text(ends_[k], 6) + " s, where it holds with " +
-                    to_text(norm(at[j].left.force), 3) + " N and " + to_text(norm(at[j].left.torque), 3) +
-                    " N m; velocities, momenta and energy go on without a jump");
+                solution.report.notes.push_back("'" + joint.name + "' is released at " +
+                                                to_text(ends_[k], 6) + " s, with a reaction of " +
+                                                to_text(norm(at[j].left.force), 3) + " N and " +
+                                                to_text(norm(at[j].left.torque), 3) +
+                                                " N m; velocities, momenta and energy go on without a jump");
             }
         }
     }

@@ -33,7 +33,8 @@ void check_interval(double start, double end, int n_elements)
                           "> " + to_text(start), "", ""});
     }
     if (!std::isfinite(end - start)) {
-        throw InputError({"time-end", "time.end", "the time from start to end is beyond all numbers",
+        throw InputError({"time-end", "time.end",
+                          "the time from start to end exceeds the range of floating-point numbers",
                           to_text(end), "", "", ""});
     }
     if (n_elements < 1 || n_elements > most_elements) {

@@ -141,6 +141,16 @@ TEST(Mistakes, OfKeysAreAnsweredWithTheKeyOrTheTable)
         expect_answer(mistake);
 }
 
+TEST(Mistakes, GravityOfOtherUnitsIsNoticedFromTheEquatorToThePoles)
+{
+    for (const char* weight : {"-9780", "-9800", "-9832", "-981", "-386.4", "-32.2"})
+        EXPECT_NE(find(read(replaced(arm, "-9.81]", std::string(weight) + "]")), "gravity-unit"), nullptr)
+            << weight;
+    for (const char* weight : {"-9.81", "-1.62", "-24.8", "-274", "-9700", "\"-9810 mm/s^2\"", "\"-1 g0\""})
+        EXPECT_EQ(find(read(replaced(arm, "-9.81]", std::string(weight) + "]")), "gravity-unit"), nullptr)
+            << weight;
+}
+
 /// Words that are names of parts, or keys where they belong, are nobody's mistakes.
 TEST(Mistakes, AreNotSeenInWhatIsRight)
 {

@@ -146,17 +146,23 @@ std::optional<Complaint> why_in_other_branch(const Model& model, std::span<const
     for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
         const Joint& joint = model.joints()[j];
         if (const ConstraintRow* row = other_branch(joint, X))
-            return Complaint{
-                "joint-branch", "joint[" + joint.name + "]." + row->label,
-                 "the " + row->label + " of joint '" + joint.name + "' is off by half a turn at the start",
-                 "", "", "its constraints can hold, but on another branch",
-                 drive_help(model, model.first_row(j), X) + "turn one of the bodies"};
+            return Complaint{"joint-branch",
+                             "joint[" + joint.name + "]." + row->label,
+                             "the " + row->label + " of joint '" + joint.name +
+                                 "' is off by half a turn at the start",
+                             "",
+                             "",
+                             "its constraints can hold, but on another branch",
+                             drive_help(model, model.first_row(j), X) + "turn one of the bodies"};
         if (has_opposite_axes(joint, X))
-            return Complaint{
-                "joint-branch", "joint[" + joint.name + "].axes",
-                 "the axes of joint '" + joint.name + "' point in opposite directions at the start", "", "",
-                 "its constraints can hold, but turned by half a turn",
-                 "reverse one of the two axes, or turn one of the bodies"};
+            return Complaint{"joint-branch",
+                             "joint[" + joint.name + "].axes",
+                             "the axes of joint '" + joint.name +
+                                 "' point in opposite directions at the start",
+                             "",
+                             "",
+                             "its constraints can hold, but turned by half a turn",
+                             "reverse one of the two axes, or turn one of the bodies"};
     }
     return {};
 }
@@ -181,7 +187,7 @@ Reach reach(const Model& model, std::span<const Matrix34> X)
         reached.closing = nearest_from(led, std::move(found), X, rows);
         reached.how =
             "the joints did not close from the start as given; from one that was disturbed by up to " +
-            to_text(size, 1) + " rad and lengths of the model they did";
+            to_text(size, 1) + " rad and model lengths they did";
         return reached;
     }
     reached.closing.closed = false;
@@ -190,8 +196,8 @@ Reach reach(const Model& model, std::span<const Matrix34> X)
 
 Complaint why_open(const Model& model, const Closing& open, std::span<const Matrix34> X, int n_tries)
 {
-    const std::string tried = "tried from the start as given and from " +
-                              std::to_string(n_tries) + " that were disturbed";
+    const std::string tried =
+        "tried from the start as given and from " + std::to_string(n_tries) + " that were disturbed";
     // If the independent rows close without the others, the others contradict them: that is a better reason
     // than a residual.
     const RowRank rank = row_rank(model, open.X, all_rows(model));
@@ -208,12 +214,13 @@ Complaint why_open(const Model& model, const Closing& open, std::span<const Matr
                                  "bodies nearer to where the mechanism closes");
     }
     const Gap worst = widest_gap(model, open.X, all_rows(model));
-    return complaint(model, worst.row, "start-position",
-             model.row_name(worst.row) + " stays open: no position was found that closes the joints" +
-                 drive_words(model, worst.row, X),
-             worst.violation, tried,
-             drive_help(model, worst.row, X) +
-                 "check lengths and joint points, or place the bodies nearer to where the mechanism closes");
+    return complaint(
+        model, worst.row, "start-position",
+        model.row_name(worst.row) + " stays open: no position was found that closes the joints" +
+            drive_words(model, worst.row, X),
+        worst.violation, tried,
+        drive_help(model, worst.row, X) +
+            "check lengths and joint points, or place the bodies nearer to where the mechanism closes");
 }
 
 std::string drive_words(const Model& model, int row, std::span<const Matrix34> X)

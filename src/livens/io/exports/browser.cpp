@@ -170,10 +170,10 @@ Browser::Browser()
     const std::string program = browser_program();
     if (program.empty())
         throw IoError(
-            "pictures are drawn by a browser without a window, and none was found; install Chromium "
-            "or Chrome (Debian: apt install chromium), or set CHROMIUM to its program. Without one: "
-            "'livens view RUN.nc' shows a page in any browser, whose button 'Save' makes the same "
-            "files",
+            "pictures are drawn by a browser without a window, and none was found; install Chromium or "
+            "Chrome (Debian: apt install chromium), or set CHROMIUM to its program. Without one: the page "
+            "that 'livens view RUN.nc' shows, and sol.report() in Python writes, has a button 'Save', which "
+            "makes the same files in any browser",
             "browser-missing");
     folder_ = new_folder();
     try {

@@ -32,7 +32,7 @@ bool begins_as_picture(std::string_view head)
 }
 
 constexpr ExportFormat formats[] = {
-    {"csv", ".csv", "table of the motion, or of the output times where they are listed",
+    {"csv", ".csv", "table of the motion; at the output times if the scenario lists them",
      [](std::string_view head) { return head.starts_with("t [s],"); },
      [](const std::filesystem::path& file, const ExportInput& input) {
          write_csv(file, input.scenario.model, input.run,
@@ -41,18 +41,18 @@ constexpr ExportFormat formats[] = {
     {"npz", ".npz", "NumPy archive of all variables of the result", begins_as_npz,
      [](const std::filesystem::path& file, const ExportInput& input) { write_npz(file, input); }},
     {"gltf", ".glb", "glTF 2.0 animation of the bodies", begins_as_gltf, write_gltf},
-    {"pvd", ".pvd", "ParaView collection; its surfaces lie in a folder beside it",
+    {"pvd", ".pvd", "ParaView collection, with its surface files in a folder beside it",
      [](std::string_view head) { return head.starts_with(pvd_head); }, write_pvd},
     {"webm", ".webm", "video, drawn by a browser without a window", begins_as_picture<'\x1a', '\x45'>,
      [](const std::filesystem::path& file, const ExportInput& input) { write_picture(file, input, "webm"); },
      true},
-    {"gif", ".gif", "moving picture for slides, likewise", begins_as_picture<'G', 'I'>,
+    {"gif", ".gif", "animated picture for slides, drawn in the same way", begins_as_picture<'G', 'I'>,
      [](const std::filesystem::path& file, const ExportInput& input) { write_picture(file, input, "gif"); },
      true},
-    {"png", ".png", "still, likewise", begins_as_picture<'\x89', 'P'>,
+    {"png", ".png", "still, drawn in the same way", begins_as_picture<'\x89', 'P'>,
      [](const std::filesystem::path& file, const ExportInput& input) { write_picture(file, input, "png"); },
      true},
-    {"svg", ".svg", "sketch with joint symbols, likewise", begins_as_picture<'<', 's'>,
+    {"svg", ".svg", "sketch with joint symbols, drawn in the same way", begins_as_picture<'<', 's'>,
      [](const std::filesystem::path& file, const ExportInput& input) { write_picture(file, input, "svg"); },
      true},
 };

@@ -116,8 +116,8 @@ void visit_motion(Archive& archive, AnyMotion& m)
     archive.list({"element_end", {"element_end"}, "s", "none", "ends of the time elements"}, m.mesh.ends);
     field("X", {"X_node", "body", "column", "xyz"}, "configuration [phi d1 d2 d3] at the elements' nodes",
           "mixed", "m 1 1 1", "X_weight", m.X);
-    field("P", {"P_node", "body", "column", "xyz"}, "momentum X' m at the elements' nodes",
-          "mixed", of_P, "P_weight", m.P);
+    field("P", {"P_node", "body", "column", "xyz"}, "momentum X' m at the elements' nodes", "mixed", of_P,
+          "P_weight", m.P);
     field("multiplier", {"multiplier_node", "row"}, "multipliers of the joints' rows at the elements' nodes",
           "mixed", nullptr, "multiplier_weight", m.multipliers);
     field("rigidity_multiplier", {"rigidity_node", "body", "rigidity_row"},
@@ -128,16 +128,20 @@ void visit_motion(Archive& archive, AnyMotion& m)
             m.velocities);
     at_ends("end_acceleration", sides, "m s-2, s-2, s-2, s-2",
             "d2X/dt2 at the element ends, from the left and from the right", m.accelerations);
-    archive.list({"end_multiplier", {"element_end", "side", "row"}, "mixed", "none",
+    archive.list({"end_multiplier",
+                  {"element_end", "side", "row"},
+                  "mixed",
+                  "none",
                   "multipliers of the acceleration-level equation at the element ends, from both sides"},
                  m.end_multipliers);
-    archive.list({"load_angle",
-                  {"load_angle"},
-                  "rad",
-                  "none",
-                  "element end after element end, angles that loads count with their turns, less what they "
-                  "are where bodies are stated"},
-                 m.load_angles);
+    archive.list(
+        {"load_angle",
+         {"load_angle"},
+         "rad",
+         "none",
+         "for each element end in turn, angles used by loads with full turns, minus their values where "
+         "[[body]] places the bodies"},
+        m.load_angles);
     indices("redundant_row", "rows whose multipliers are not unique, from 0", m.redundant_rows);
     indices("block_end", "element ends, from 0, between blocks of elements solved together", m.block_ends);
 }
@@ -149,7 +153,7 @@ void visit_estimate(Archive& archive, AnyEstimate& e)
                             auto& values) {
         archive.list({name, {"element_end", over}, units, "none", meaning}, values);
     };
-    errors("end_position_error", "body", "1", "estimated, of the centre of mass, in lengths of the model",
+    errors("end_position_error", "body", "1", "estimated, of the centre of mass, in model lengths",
            e.position);
     errors("end_orientation_error", "body", "rad", "estimated; 0 for point masses", e.orientation);
     errors("end_velocity_error", "body", "m s-1", "estimated, of the centre of mass", e.velocity);
@@ -168,7 +172,7 @@ void visit_run(Archive& archive, AnyRun& run)
                   {"element_end"},
                   "1",
                   "none",
-                  "of a small perturbation of the start until then, in lengths of the model and rad"},
+                  "growth factor of a small initial perturbation up to then, in model lengths and rad"},
                  run.growth);
 }
 

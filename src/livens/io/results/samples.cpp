@@ -102,7 +102,7 @@ const std::vector<ErrorVariable>& error_variables()
           {"time", "body"},
           "1",
           "none",
-          "estimated error of the centre of mass, in lengths of the model (model_length)"},
+          "estimated error of the centre of mass, in model lengths (model_length)"},
          &ErrorEstimate::position},
         {{"estimated_orientation_error",
           {"time", "body"},

@@ -58,22 +58,23 @@ Table include_table()
 {
     Table table{
         "[[include]]",
-        "Another file, as a part of this one: its bodies, points, joints, drives, loads and sensors, with a "
-        "prefix before their names, moved and turned as one. Names in it are its own, `world` is the world. "
-        "What it says of the world's axes and places turns and moves along: points, axes, forces and paths "
-        "there, and the axes of its sensors. It may be a scenario of its own: its `[time]`, `[method]` and "
-        "`title` do not count here; its gravity is that of this file, or not stated.",
+        "Another file as a part of this model: its bodies, points, joints, drives, loads and sensors, with a "
+        "prefix before their names, displaced and rotated as a whole. Names in that file refer to its own "
+        "parts, `world` is the world. Whatever the file states in the world is displaced with it: points and "
+        "axes, forces in world axes, prescribed paths, and the axes of its sensors. The file may be a "
+        "complete "
+        "scenario: its `title`, `[time]` and `[method]` are not used; its gravity equals that of this file "
+        "or is "
+        "not stated.",
         {Key{"file", types::text,
-             "A path from the folder of this file on, which it does not leave; instead of `model`."},
-         Key{"model", types::model, "What a file would hold, as a table; instead of `file`."},
+             "Path of the file, relative to the folder of this file and inside of it. Excludes `model`."},
+         Key{"model", types::model, "Content of such a file as a table. Excludes `file`."},
          Key{"prefix", types::text,
-             "Before all names of what is included: with `\"left.\"` its `knee` is `left.knee`. Default: "
-             "none."},
+             "Prefix of all names: with `\"left.\"`, `knee` becomes `left.knee`. Default: none."},
          Key{"parameters", types::named_numbers,
-             "Values that `[parameters]` of what is included have instead of their own: numbers, or "
-             "expressions of "
-             "parameters of this file, `{ L = \"2*reach\" }`."},
-         Key{"position", types::vector3, "Where its origin comes to be.", "m", "[0, 0, 0]"}}};
+             "Values for `[parameters]` of the included file: numbers, or expressions of parameters of this "
+             "file, as in `{ L = \"2*reach\" }`."},
+         Key{"position", types::vector3, "Position of the file's origin.", "m", "[0, 0, 0]"}}};
     for (const Key& key : orientation_keys()) table.keys.push_back(key);
     return table;
 }

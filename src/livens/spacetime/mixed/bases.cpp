@@ -18,11 +18,11 @@ constexpr Basis table[] = {
      [](const Mixed& method, const std::vector<double>& ends, const std::vector<double>&) {
          return TimeSpace::lagrange(ends, method.degree);
      }},
-    {"bspline", "as smooth as the knots allow", true, false,
+    {"bspline", "B-splines, as smooth as the knots allow", true, false,
      [](const Mixed& method, const std::vector<double>& ends, const std::vector<double>& kinks) {
          return TimeSpace::bspline(method.degree, knots_of(method, ends, kinks));
      }},
-    {"nurbs", "likewise, with `weights`", true, true,
+    {"nurbs", "B-splines with `weights`", true, true,
      [](const Mixed& method, const std::vector<double>& ends, const std::vector<double>& kinks) {
          return TimeSpace::nurbs(method.degree, knots_of(method, ends, kinks), method.weights);
      }},

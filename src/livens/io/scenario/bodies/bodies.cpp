@@ -21,11 +21,12 @@ constexpr double symmetry_slack = 1e-12;    // of the size of a matrix: what rou
 std::vector<Key> pose_keys(std::string_view otherwise)
 {
     std::vector<Key> keys{
-        {"position", types::vector3, "Of the reference point, in the world.", "m", otherwise}};
+        {"position", types::vector3, "Position of the reference point in the world.", "m", otherwise}};
     for (const Key& key : orientation_keys()) keys.push_back(key);
-    keys.push_back({"velocity", types::vector3, "Of the reference point, world axes.", "m/s", otherwise});
-    keys.push_back({"angular_velocity", types::vector3, "World axes.", "rad/s"});
-    keys.push_back({"angular_velocity_body", types::vector3, "Body axes.", "rad/s"});
+    keys.push_back(
+        {"velocity", types::vector3, "Velocity of the reference point, world axes.", "m/s", otherwise});
+    keys.push_back({"angular_velocity", types::vector3, "Angular velocity, world axes.", "rad/s"});
+    keys.push_back({"angular_velocity_body", types::vector3, "Angular velocity, body axes.", "rad/s"});
     return keys;
 }
 
@@ -49,7 +50,7 @@ void check_moments(const Section& body)
     for (const std::string key : {"mass", "first_moment", "second_moment"})
         if (!body.has(key))
             body.error("", "mass-missing", body.label() + " has no '" + key + "'",
-                       {"M, S and E are stated by 'mass', 'first_moment' and 'second_moment' together", ""});
+                       {"give M, S and E together: 'mass', 'first_moment' and 'second_moment'", ""});
     const Value* E = body.find("second_moment");
     if (E == nullptr || E->n_rows != 3) return;
     const Matrix3 m = body.columns("second_moment");
@@ -219,64 +220,69 @@ Body build_body(const Section& section, const std::string& name, const Solid& sh
     return body;
 }
 
+Table placement_at_start()
+{
+    return {
+        "[body.start]",
+        "Placement at the initial time, if it differs from `[[body]]`; the table follows its `[[body]]`. "
+        "Keys left out keep their values from `[[body]]`. Joints, `at`, default rod lengths and the zero of "
+        "joint coordinates still refer to the placement in `[[body]]`. Joint angles change to the new "
+        "placement by the shorter way, less than half a turn; `[[start.coordinates]]` applies afterwards.",
+        pose_keys({})};
+}
+
 }   // namespace
 
 Table body_table()
 {
     Table end{"[body.end]",
-              "The body at the end of time, below its `[[body]]`; needed for all bodies if `given` of "
-              "`[end]` is not `nothing`. Momenta are those of the positions and velocities stated here.",
+              "Placement at the final time, below its `[[body]]`. Every body needs one if `given` of `[end]` "
+              "is not "
+              "`nothing`. Prescribed momenta are computed from these positions and velocities.",
               pose_keys("[0, 0, 0]")};
-    Table start{
-        "[body.start]",
-        "The body at the start of time, below its `[[body]]`, where it is not as stated there: joints, "
-        "`at`, default lengths of rods and what coordinates count from refer to `[[body]]`. What is "
-        "left out is as stated. Angles count on by the shorter way; "
-        "`[[start.coordinates]]` leads on from there.",
-        pose_keys({})};
     Table body{
         "[[body]]",
-        "A rigid body or a point mass. Body coordinates have their origin at the reference point and their "
-        "axes along the three directors. Mass comes from `shape` with `density` or `mass`, or from `mass` "
-        "and `inertia` without a shape. Orientation is given by one of `directors`, `quaternion`, "
-        "`rotation_vector`; without any the axes are those of the world. Position, orientation and "
-        "velocities are those at the start.",
-        {Key{"name", types::text, "How joints, loads and results call the body; not `world`."}.needed(),
-         Key{"shape", types::table, "Solid, for mass and inertia."}.holding(shape_table()),
-         Key{"density", types::number, "Of the shape; instead of `mass`.", "kg/m^3"}.within(positive),
-         Key{"mass", types::number, "Of the body; instead of `density`.", "kg"}.within(positive),
+        "A rigid body or a point mass. The body frame has its origin at the reference point and its axes "
+        "along the three directors d1, d2, d3; body coordinates are coordinates in this frame. Mass "
+        "properties come either from a `shape` with `density` or `mass`, or from `mass` and `inertia` "
+        "without a shape. Orientation is given by one of `directors`, `quaternion` and `rotation_vector`; by "
+        "default the body axes are the world axes. Position, orientation and velocities are initial values.",
+        {Key{"name", types::text, "Name by which joints, loads and results refer to the body; not `world`."}
+             .needed(),
+         Key{"shape", types::table, "Solid from which mass and inertia are computed."}.holding(shape_table()),
+         Key{"density", types::number, "Density of the shape. Excludes `mass`.", "kg/m^3"}.within(positive),
+         Key{"mass", types::number, "Mass of the body. Excludes `density`.", "kg"}.within(positive),
          Key{"center_of_mass", types::vector3,
-             "In body coordinates. With a shape: where its centre of mass lies; meshes and unions lie as "
-             "they are without it.",
+             "Centre of mass in body coordinates. A shape is moved so that its centre of mass lies here; "
+             "without this key, meshes and unions keep their own coordinates.",
              "m", "[0, 0, 0]"},
          Key{"inertia", types::principal_or_full,
-             "About the centre of mass, in body axes: three principal moments or the matrix. Without a shape "
-             "only.",
+             "Inertia about the centre of mass, in body axes: three principal moments or the full matrix. "
+             "Only without a shape.",
              "kg m^2"},
          {"first_moment", types::vector3,
-          "S of the paper: the mass times the place of its centre from the reference point, in body "
-          "coordinates; with "
-          "`mass` (M) and `second_moment` (E), instead of a shape or `inertia`.",
+          "First moment of mass S: mass times the position of the centre of mass relative to the reference "
+          "point, in body coordinates. Given together with `mass` (M) and `second_moment` (E), instead of a "
+          "shape or `inertia`.",
           "kg m"},
          {"second_moment", types::principal_or_full,
-          "E of the paper about the reference point: the integral of the density times x x^T, the matrix or "
-          "its diagonal "
-          "(not the inertia, which is tr(E) I - E). With it `directors` may be skew and of any length: "
-          "coordinates of the body then are components along them, those of frames' axes along the nearest "
-          "perpendicular unit vectors.",
+          "Second moment of mass E about the reference point: the integral of density times x x^T, as a "
+          "matrix or its diagonal. It is not the inertia tensor, which is tr(E) I - E. With this key the "
+          "directors may be oblique and of any length: body coordinates are then components along the "
+          "directors, but axes of frames are given along the nearest orthonormal triad.",
           "kg m^2"},
          Key{"director_rates", types::triple,
-             "Time derivatives of the directors, [d1', d2', d3'], as they are. Rates that deform the triad "
+             "Time derivatives of the directors, [d1', d2', d3'], used as given. Rates that deform the triad "
              "need `initial = \"project\"`.",
              "1/s"},
-         visual_key("How the body looks, apart from its mass: one shape, or a list of them. Drawn instead of "
-                    "`shape`."),
-         Key{"start", types::table, "The body at the start of time, if that is another place."}.holding(
-             start),
-         Key{"end", types::table, "The body at the end of time."}.holding(end)}};
-    for (const Key& key : color_keys("Of the body in pictures: a name of CSS, `\"#rrggbb\"`, or red, green "
-                                     "and blue. Default: one that others do not have.",
-                                     "1: nothing is seen through the body."))
+         visual_key("Appearance of the body, independent of its mass: one shape or a list of shapes, drawn "
+                    "instead of `shape`."),
+         Key{"start", types::table, "Placement at the initial time, if it differs from the one given here."}
+             .holding(placement_at_start()),
+         Key{"end", types::table, "Placement at the final time."}.holding(end)}};
+    for (const Key& key : color_keys("Colour in pictures: a CSS colour name, `\"#rrggbb\"`, or red, green "
+                                     "and blue. Default: a colour that no other body has.",
+                                     "Opacity in pictures; 1 is opaque."))
         body.keys.push_back(key);
     body.keys.insert(body.keys.begin() + 6, end.keys.begin(), end.keys.end());
     return body;
@@ -285,10 +291,13 @@ Table body_table()
 std::vector<Key> orientation_keys()
 {
     return {{"directors", types::triple,
-             "Axes of the body or frame, [d1, d2, d3], each in those of the world or "
-             "body."},
-            {"quaternion", types::vector4, "Orientation (w, x, y, z) in the world or body, of norm 1."},
-            {"rotation_vector", types::vector3, "Orientation: axis times angle.", "rad"}};
+             "Orientation as three axis vectors [d1, d2, d3], in world coordinates (of a frame, part or "
+             "visual: in body coordinates)."},
+            {"quaternion", types::vector4,
+             "Orientation as a unit quaternion (w, x, y, z): it rotates the axes of the body into world axes "
+             "(of a frame, part or visual: its axes into body axes)."},
+            {"rotation_vector", types::vector3, "Orientation as a rotation vector: unit axis times angle.",
+             "rad"}};
 }
 
 bool check_orientation(const Section& section)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Meshes of a scenario, each reduced to what a run needs of it: moments, surfaces and a thinned picture
 // (theory.md, Bodies from meshes). The reduced form is kept in the run's file, so that a run can be read
-// again without its meshes. Paths never leave the scenario's folder (docs/program.md, Files of strangers).
+// again without its meshes. Paths never leave the scenario's folder (docs/program.md, Untrusted files).
 #include "livens/io/scenario/bodies/meshes.h"
 
 #include <algorithm>

@@ -153,14 +153,13 @@ Table point_table()
 {
     return {
         "[[point]]",
-        "A place of a body with a name, which may stand wherever a joint, drive, load or sensor takes the "
-        "coordinates of a point: `at = \"tip\"`, `point = \"tip\"`, `points = [\"hook\", \"tip\"]`. It "
-        "tells the body, too: `body` and `between` may be left out. Results have a point's path without "
-        "a sensor, and expressions read it: `tip.x`.",
-        {Key{"name", types::text, "How others refer to it; not that of a body, joint, drive or sensor."}
-             .needed(),
-         Key{"body", types::text, "On which it lies, or `\"world\"`."}.needed(),
-         Key{"position", types::vector3, "In coordinates of the body.", "m", "[0, 0, 0]"}}};
+        "A named point of a body or of the world. The name stands wherever a joint, drive, load or sensor "
+        "takes the coordinates of a point: `at = \"tip\"`, `point = \"tip\"`, `points = [\"hook\", "
+        "\"tip\"]`. It implies the body, so that `body` and `between` are not needed. The motion of a point "
+        "is recorded without a sensor, and expressions use it: `tip.x`.",
+        {Key{"name", types::text, "Name of the point; no body, joint, drive or sensor may have it."}.needed(),
+         Key{"body", types::text, "Name of the body, or `\"world\"`."}.needed(),
+         Key{"position", types::vector3, "Position in body coordinates.", "m", "[0, 0, 0]"}}};
 }
 
 void read_points(Builder& builder)

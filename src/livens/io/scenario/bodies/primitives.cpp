@@ -118,12 +118,13 @@ PrimitiveSolid solid_of_cone(const Section& shape)
 const std::vector<Primitive>& io_internal::primitives()
 {
     static const std::vector<Primitive> all{
-        {Key{"box", types::vector3, "Edges along d1, d2, d3.", "m"}.within(positive),
+        {Key{"box", types::vector3, "Edge lengths along d1, d2, d3.", "m"}.within(positive),
          [](double density, const Section& shape) { return box(density, shape.vector("box")); },
          [](const Section& shape) { return box_outline(shape.vector("box")); },
          [](const Section& shape) { return box_solid(shape.vector("box")); }},
-        {Key{"sphere", types::number_or_table, "Radius, or a table with it.", "m"}.within(positive).holding(
-             {"sphere of shape", "", {length("radius", "Of the sphere.")}}),
+        {Key{"sphere", types::number_or_table, "Radius, or a table with `radius`.", "m"}
+             .within(positive)
+             .holding({"sphere of shape", "", {length("radius", "Radius.")}}),
          [](double density, const Section& shape) { return sphere(density, radius_of_sphere(shape)); },
          [](const Section& shape) {
              const double r = radius_of_sphere(shape);
@@ -133,21 +134,22 @@ const std::vector<Primitive>& io_internal::primitives()
              const double r = radius_of_sphere(shape);
              return ellipsoid_solid({r, r, r});
          }},
-        {Key{"cylinder", types::table, "Solid or tube."}.holding(
+        {Key{"cylinder", types::table, "Solid cylinder or tube."}.holding(
              {"cylinder of shape",
               "",
-              {length("radius", "Outer radius."), length("length", "Along d3."),
-               Key{"inner_radius", types::number, "Of the bore of a tube.", "m", "0"}.within(not_negative)}}),
+              {length("radius", "Outer radius."), length("length", "Length along d3."),
+               Key{"inner_radius", types::number, "Inner radius of a tube.", "m", "0"}.within(
+                   not_negative)}}),
          [](double density, const Section& shape) {
              const Section& c = *only_section(shape, "cylinder");
              return cylinder(density, c.number("radius"), c.number("length"), c.number("inner_radius"));
          },
          outline_of_cylinder, solid_of_cylinder},
-        {Key{"capsule", types::table, "Cylinder between two half spheres."}.holding(
+        {Key{"capsule", types::table, "Cylinder with hemispherical ends."}.holding(
              {"capsule of shape",
               "",
-              {length("radius", "Of cylinder and half spheres."),
-               length("length", "Of the cylindrical part, along d3.")}}),
+              {length("radius", "Radius of the cylinder and of its hemispherical ends."),
+               length("length", "Length of the cylindrical part, along d3.")}}),
          [](double density, const Section& shape) {
              const Section& c = *only_section(shape, "capsule");
              return capsule(density, c.number("radius"), c.number("length"));
@@ -157,10 +159,12 @@ const std::vector<Primitive>& io_internal::primitives()
          [](double density, const Section& shape) { return ellipsoid(density, shape.vector("ellipsoid")); },
          [](const Section& shape) { return stretched(ball_outline(), shape.vector("ellipsoid")); },
          [](const Section& shape) { return ellipsoid_solid(shape.vector("ellipsoid")); }},
-        {Key{"cone", types::table, "Solid cone, apex along +d3, origin at its centre of mass."}.holding(
-             {"cone of shape",
-              "",
-              {length("radius", "Of the base."), length("height", "From base to apex, along d3.")}}),
+        {Key{"cone", types::table,
+             "Solid cone with its apex toward +d3 and its origin at the centre of mass."}
+             .holding({"cone of shape",
+                       "",
+                       {length("radius", "Radius of the base."),
+                        length("height", "Height from base to apex, along d3.")}}),
          [](double density, const Section& shape) {
              const Section& c = *only_section(shape, "cone");
              return cone(density, c.number("radius"), c.number("height"));

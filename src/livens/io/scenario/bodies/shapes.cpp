@@ -21,20 +21,19 @@ std::vector<Key> mesh_keys(bool is_part)
 {
     std::vector<Key> keys{
         {"mesh", types::text,
-         "A file of the solid: STL, OBJ or PLY (its closed surface), Gmsh's MSH (elements of volume, or a "
-         "closed "
-         "surface); a path from the scenario's folder on, which it does not leave. Its coordinates are those "
-         "of the body."},
-        {"unit", types::text, "Of the mesh's numbers, a length such as `\"mm\"`; a mesh needs it."},
-        Key{"scale", types::number, "The mesh is made so many times larger.", "", "1"}.within(positive),
+         "Mesh file of the solid: STL, OBJ or PLY (a closed surface), or Gmsh MSH (volume elements or a "
+         "closed surface). The path is relative to the scenario's folder and must stay inside it. Mesh "
+         "coordinates are body coordinates."},
+        {"unit", types::text,
+         "Length unit of the numbers in the mesh file, such as `\"mm\"`. Needed for a mesh."},
+        Key{"scale", types::number, "Scale factor for the mesh.", "", "1"}.within(positive),
         {"turn", types::flag,
-         "Faces of the mesh that look inwards, and elements that are inside out, are turned instead of "
-         "refused."}};
+         "Flips faces that point inwards and inverted elements of the mesh, which are errors otherwise."}};
     if (!is_part)
         keys.push_back(
             {"densities", types::named_texts,
-             "Of the mesh's regions of volume by their names in the file, each a string with a unit: "
-             "`{ steel = \"7850 kg/m^3\" }`; all of them, instead of `density` and `mass`."});
+             "Density of each volume region of the mesh by its name in the file, as a string with a unit: `{ "
+             "steel = \"7850 kg/m^3\" }`. Every region needs one. Excludes `density` and `mass`."});
     return keys;
 }
 
@@ -42,12 +41,13 @@ Key density_field_key(bool is_part)
 {
     return {
         "density_field", types::text,
-        std::string("The density in kg/m^3 as an expression in `x`, `y` and `z`, the place in m in the ") +
-            (is_part ? "part's own axes, before `position` and orientation" : "axes of the shape") +
-            " (of a mesh after `unit` and `scale`): `\"2000 + 300*z\"`; " +
-            (is_part ? "times `density`, whose sign makes it a hole, and without that of the body."
-                     : "instead of `density` and `mass`; of a union at its parts.") +
-            " A mesh that is a surface takes linear ones."};
+        std::string("Density in kg/m^3 as an expression in `x`, `y` and `z`, the position in m along the ") +
+            (is_part ? "part's own axes, before `position` and orientation apply" : "axes of the shape") +
+            " (for a mesh after `unit` and `scale`): `\"2000 + 300*z\"`. " +
+            (is_part ? "It is multiplied by `density`, whose sign makes a hole, and not by the density of "
+                       "the body."
+                     : "Excludes `density` and `mass`; in a union it belongs to each part.") +
+            " A surface mesh accepts linear expressions only."};
 }
 
 /// The key that says what a shape or part is; null after an error.
@@ -291,32 +291,31 @@ double unit_of_length(const std::string& text)
 
 Table io_internal::shape_table()
 {
-    Table part{
-        "parts of shape",
-        "Solids that are united, each with exactly one of the shapes. They must not overlap, but for holes.",
-        {}};
+    Table part{"parts of shape",
+               "Parts of a union, each with exactly one of these shapes. Parts must not overlap, except for "
+               "holes (negative density).",
+               {}};
     for (const Primitive& p : primitives()) part.keys.push_back(p.key);
     for (const Key& key : mesh_keys(true)) part.keys.push_back(key);
     part.keys.push_back(density_field_key(true));
+    part.keys.push_back({"name", types::text,
+                         "Name of the part. Loads refer to its whole surface by this name, and to a surface "
+                         "of its mesh as `name/surface`; `livens mass` lists its mass."});
     part.keys.push_back(
-        {"name", types::text,
-         "Of the part: loads find its whole surface by that, and a surface of its mesh as `name/surface`; "
-         "`livens mass` tells what it weighs."});
-    part.keys.push_back(
-        {"position", types::vector3, "Of the part's origin in body coordinates.", "m", "[0, 0, 0]"});
+        {"position", types::vector3, "Position of the part's origin in body coordinates.", "m", "[0, 0, 0]"});
     for (const Key& key : orientation_keys()) part.keys.push_back(key);
     part.keys.push_back({"density", types::number,
-                         "Relative to that of the body; -1 for holes in parts of density 1.", "", "1"});
+                         "Density relative to that of the body; -1 makes a hole in parts of density 1.", "",
+                         "1"});
     Table shape{"shape of [[body]]",
-                "Exactly one of the shapes. Axes of revolution lie along d3. Primitives have their origin at "
-                "their centre of mass.",
+                "Exactly one of these shapes. Axes of revolution are along d3. The origin of a primitive is "
+                "its centre of mass.",
                 {}};
     for (const Primitive& p : primitives()) shape.keys.push_back(p.key);
-    shape.keys.push_back(
-        Key{"point", types::flag, "A point mass: no orientation, no inertia; needs `mass`."});
+    shape.keys.push_back(Key{"point", types::flag, "Point mass: no orientation, no inertia. Needs `mass`."});
     for (const Key& key : mesh_keys(false)) shape.keys.push_back(key);
     shape.keys.push_back(density_field_key(false));
-    shape.keys.push_back(Key{"parts", types::tables, "A union of shapes."}.holding(part));
+    shape.keys.push_back(Key{"parts", types::tables, "Union of shapes."}.holding(part));
     return shape;
 }
 

@@ -56,26 +56,25 @@ std::vector<Key> color_keys(const char* color, const char* opacity)
 
 Key visual_key(const char* doc)
 {
-    Table visual{
-        "visual",
-        "A shape that is drawn and weighs nothing: exactly one of the shapes, at a place of the body "
-        "or the world.",
-        {}};
+    Table visual{"visual",
+                 "A shape that is drawn and has no mass: exactly one of these shapes, placed on the body or "
+                 "in the world.",
+                 {}};
     for (const Primitive& p : primitives()) visual.keys.push_back(p.key);
+    visual.keys.push_back({"mesh", types::text,
+                           "Mesh file: STL, OBJ, PLY or Gmsh MSH. The path is relative to the scenario's "
+                           "folder and must stay inside it. The surface need not be closed."});
     visual.keys.push_back(
-        {"mesh", types::text,
-         "A file of triangles: STL, OBJ, PLY or Gmsh's MSH; a path from the scenario's folder "
-         "on, which it does not leave. It need not be closed."});
+        {"unit", types::text,
+         "Length unit of the numbers in the mesh file, such as `\"mm\"`. Needed for a mesh."});
     visual.keys.push_back(
-        {"unit", types::text, "Of the mesh's numbers, a length such as `\"mm\"`; a mesh needs it."});
-    visual.keys.push_back(
-        Key{"scale", types::number, "The mesh is made so many times larger.", "", "1"}.within(positive));
+        Key{"scale", types::number, "Scale factor for the mesh.", "", "1"}.within(positive));
     visual.keys.push_back({"position", types::vector3,
-                           "Of the shape's origin, in coordinates of the body or the world.", "m",
+                           "Position of the shape's origin, in body or world coordinates.", "m",
                            "[0, 0, 0]"});
     for (const Key& key : orientation_keys()) visual.keys.push_back(key);
-    for (const Key& key : color_keys("Default: that of the body.",
-                                     "1: nothing is seen through it. Default: that of the body."))
+    for (const Key& key :
+         color_keys("Colour. Default: that of the body.", "Opacity; 1 is opaque. Default: that of the body."))
         visual.keys.push_back(key);
     return Key{"visual", types::table_or_tables, doc}.holding(visual);
 }
@@ -83,8 +82,9 @@ Key visual_key(const char* doc)
 Table world_table()
 {
     return {"[world]",
-            "What stands still: a floor, walls, the base of a robot. It is drawn and nothing else.",
-            {visual_key("One shape, or a list of them, in the world's coordinates.")}};
+            "Fixed surroundings: a floor, walls, the base of a robot. They are drawn and have no effect on "
+            "the motion.",
+            {visual_key("One shape or a list of shapes, in world coordinates.")}};
 }
 
 bool check_look(const Section& section)

@@ -22,26 +22,23 @@ const std::vector<Kind>& drive_kinds()
 {
     static const std::vector<Kind> all{
         {"joint",
-         "a coordinate of a joint",
-         {Key{"joint", types::text, "The joint whose coordinate follows the law."}.needed(),
-          coordinate_key()}},
+         "prescribes a joint coordinate",
+         {Key{"joint", types::text, "The driven joint."}.needed(), coordinate_key()}},
         {"distance",
-         "the distance of two points",
-         {Key{"between", types::names,
-              "Two different bodies, or one and `\"world\"`; names in `points` say them as well."}
-              .needed_without("points"),
+         "prescribes the distance between two points",
+         {Key{"between", types::names, two_bodies_or_points}.needed_without("points"),
           Key{"points", types::two_points,
-              "One on each body, in its coordinates. Default: the reference points, for the world its "
-              "origin.",
+              "One point per body, in that body's coordinates. Default: the reference points (for the world: "
+              "its origin).",
               "m"}}},
         {"point",
-         "a point of a body, from where it stands, in world axes",
-         {Key{"body", types::text, "The body; a name as `point` says it as well."}.needed_without("point"),
-          Key{"point", types::point, "In body coordinates.", "m", "[0, 0, 0]"}}},
+         "prescribes the path of a point of a body",
+         {Key{"body", types::text, body_or_point}.needed_without("point"),
+          Key{"point", types::point, "Position of the point in body coordinates.", "m", "[0, 0, 0]"}}},
         {"body",
-         "a point of a body, which does not turn",
-         {Key{"body", types::text, "The body; a name as `point` says it as well."}.needed_without("point"),
-          Key{"point", types::point, "In body coordinates.", "m", "[0, 0, 0]"}}}};
+         "prescribes the path of a point of a body and holds the body's orientation",
+         {Key{"body", types::text, body_or_point}.needed_without("point"),
+          Key{"point", types::point, "Position of the point in body coordinates.", "m", "[0, 0, 0]"}}}};
     return all;
 }
 
@@ -298,21 +295,27 @@ void read_drive(Builder& builder, const Section& drive, std::unordered_set<std::
     });
 }
 
-}   // namespace
-
-void check_units(const Section& section, bool is_angle, const std::string& path)
+Key harmonic_key(const KeyType& numbers)
 {
-    for (const Value& v : section.values()) {
-        for (const Section& inner : v.sections)
-            check_units(inner, is_angle, path + "." + std::string(v.key->name));
-        if (v.key->other_unit.empty() || !(is_angle ? v.has_unit : v.has_other_unit)) continue;
-        throw InputError({"unit", path + "." + std::string(v.key->name),
-                          "'" + std::string(v.key->name) + "' of " + section.label() + " is along " +
-                              (is_angle ? "an angle" : "a length"),
-                          "", "", "",
-                          "give it in " + std::string(is_angle ? v.key->other_unit : v.key->unit)});
-    }
+    return Key{"harmonic", types::table, "Harmonic motion: amplitude * sin(2*pi*frequency*t + phase)."}
+        .holding({"harmonic of a drive",
+                  "Sinusoidal motion.",
+                  {Key{"amplitude", numbers, "Amplitude.", "m"}.or_in("rad").needed(),
+                   Key{"frequency", types::number, "Frequency, in cycles per second.", "Hz"}.needed(),
+                   Key{"phase", types::number, "Phase angle at t = 0.", "rad", "0"}}});
 }
+
+Key step_key(const KeyType& numbers)
+{
+    return Key{"step", types::table, "Smooth step with two continuous derivatives."}.holding(
+        {"step of a drive",
+         "A change by `rise` between two times; constant before and after.",
+         {Key{"from", types::number, "Beginning of the change.", "s"}.needed(),
+          Key{"until", types::number, "End of the change.", "s"}.needed(),
+          Key{"rise", numbers, "Total change.", "m"}.or_in("rad").needed()}});
+}
+
+}   // namespace
 
 void read_times(const Builder& builder, const Section& section, Joint& joint)
 {
@@ -337,52 +340,48 @@ Table drive_table()
 {
     const KeyType numbers = types::number_or_list;
     const Key table =
-        Key{"table", types::table, "A cubic spline through values over time, straight on before and after."}
+        Key{"table", types::table,
+            "Cubic spline through values over time, continued by straight lines before and after."}
             .holding({"table of a drive",
-                      "Two continuous derivatives: a drive cannot jump or kink.",
-                      {Key{"times", types::list, "Ascending, two or more.", "s"}.needed(),
+                      "The spline has two continuous derivatives, since a drive cannot jump or have kinks.",
+                      {Key{"times", types::list, "Two or more times, ascending.", "s"}.needed(),
                        Key{"values", types::list,
-                           "One for each time; for a path x, y, z of each, one after the other.", "m"}
+                           "One value per time; for a path, x, y, z of each time in turn.", "m"}
                            .or_in("rad")
                            .needed()}});
-    const Key wave = Key{"harmonic", types::table, "amplitude sin(2 pi frequency t + phase)."}.holding(
-        {"harmonic of a drive",
-         "A sine over time.",
-         {Key{"amplitude", numbers, "", "m"}.or_in("rad").needed(),
-          Key{"frequency", types::number, "", "Hz"}.needed(), Key{"phase", types::number, "", "rad", "0"}}});
-    const Key step = Key{"step", types::table, "A smooth change, with two continuous derivatives."}.holding(
-        {"step of a drive",
-         "The rest of the time nothing changes.",
-         {Key{"from", types::number, "Begins.", "s"}.needed(),
-          Key{"until", types::number, "Ends.", "s"}.needed(),
-          Key{"rise", numbers, "", "m"}.or_in("rad").needed()}});
     return Table{
         "[[drive]]",
-        "What follows a function of time: angles in rad and displacements in m as joints count them, "
-        "distances in m, paths as displacements from where the point stands, in m and world axes, with three "
-        "numbers for each one below. Exactly one law is given. What holds the bodies is the drive's "
-        "reaction, on the second body; its power is in the balance of energy. Velocities of the bodies at "
-        "the start must fit, or `[start]` says `initial = \"project\"`.",
-        {Key{"name", types::text, "Results refer to drives as to joints. Default: `drive of` joint or body."},
+        "A prescribed motion, given by exactly one law over time. Angles (rad) and displacements (m) are "
+        "joint coordinates, distances are in m. The types point and body prescribe a path: the displacement "
+        "of a point from its initial position, in m and world axes; for a path give three numbers wherever "
+        "one is listed below. The reaction of a drive acts on the second body, and its power enters the "
+        "energy balance. Initial velocities must agree with the law, or `[start]` sets `initial = "
+        "\"project\"`.",
+        {Key{"name", types::text,
+             "Name of the drive; results list drives among the joints. Default: `drive of` and the joint or "
+             "body."},
          Key{"type", types::choice, ""}.needed(),
          Key{"from", types::number,
-             "When it begins to act; the motion has to meet it then, in position and rate. Default: the "
-             "start.",
+             "Time at which the drive engages; position and rate must match the drive then. Default: the "
+             "initial time.",
              "s"},
-         Key{"until", types::number, "When it lets go: velocities go on. Default: never.", "s"},
-         Key{"value", numbers, "Constant.", "m"}.or_in("rad").or_formulas(formulas_for_value),
+         Key{"until", types::number,
+             "Time at which the drive is released; velocities continue. Default: never.", "s"},
+         Key{"value", numbers, "Constant value.", "m"}.or_in("rad").or_formulas(formulas_for_value),
          Key{"rate", numbers,
-             "Constant rate, from what the coordinate is at the start of the motion, beginning with the "
-             "drive: `\"60 rpm\"`. A rate over time is an `expression` of its integral.",
+             "Constant rate, such as `\"60 rpm\"`. It applies from the time at which the drive engages, to "
+             "the value of the coordinate at the initial time. For a varying rate, give the coordinate "
+             "itself as `expression`.",
              "m/s"}
              .or_in("rad/s")
              .or_formulas("for a varying rate give the angle or displacement itself as 'expression', as in "
                           "\"5*t^2\""),
-         wave, step,
+         harmonic_key(numbers), step_key(numbers),
          Key{"expression", types::text_or_list,
-             "A formula of t, in rad or m: `0.1*sin(2*pi*t)`; without kinks."},
+             "Formula of the time t, in rad or m: `0.1*sin(2*pi*t)`. It must not have kinks."},
          Key{"polynomial", types::list,
-             "Coefficients of 1, t, t^2, ..; of a path x, y, z of each; plain numbers, in rad or m and s."}
+             "Coefficients of 1, t, t^2, .. as plain numbers in rad or m and s; for a path, x, y, z of each "
+             "coefficient."}
              .or_formulas(
                  "coefficients of powers of t have a unit each: give plain numbers, in rad or m and s"),
          table}}

@@ -144,14 +144,14 @@ std::vector<Key> expression_keys(bool is_vector)
 {
     static constexpr KeyType three{"three strings", Form::names, 3};
     return {Key{"expression", is_vector ? three : types::text,
-                is_vector ? "Instead of `value`: a formula for each component ([how](joints.md#expressions))."
-                          : "Instead of `value`: a formula ([how](joints.md#expressions))."},
+                is_vector ? "One formula per component, instead of `value` ([syntax](joints.md#expressions))."
+                          : "A formula, instead of `value` ([syntax](joints.md#expressions))."},
             Key{"inputs", types::named_texts,
-                "Short names for what `expression` reads: coordinates of joints and their rates, and what "
-                "sensors read, as in `{ phi = \"pivot.angle\", w = \"pivot.angle_rate\", x = \"tip.x\" }`, "
-                "in rad, m and s. They may stand there as they are, too: `-10*pivot.angle`, with blanks in "
-                "quotes: `-10*'crank pin'.angle`."},
-            Key{"breaks", types::list, "Instants at which `expression` jumps or bends; elements end there.",
+                "Symbols for quantities used in `expression`: joint coordinates, their rates, and sensor "
+                "readings, in rad, m and s, as in `{ phi = \"pivot.angle\", w = \"pivot.angle_rate\", x = "
+                "\"tip.x\" }`. An expression may also contain these names directly, `-10*pivot.angle`; names "
+                "with blanks need quotes, `-10*'crank pin'.angle`."},
+            Key{"breaks", types::list, "Times at which `expression` jumps or has a kink; elements end there.",
                 "s"}};
 }
 

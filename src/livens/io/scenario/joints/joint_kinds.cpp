@@ -14,39 +14,40 @@ namespace livens::inline io_internal {
 
 namespace {
 
-const Key at{"at", types::point, "The joint's point at the start, in the world.", "m"};
-const Key axis{"axis", types::vector3, "With `at`: the axis at the start, world axes, of any length."};
+const Key at{"at", types::point, "Position of the joint in the world, where `[[body]]` places the bodies.",
+             "m"};
+const Key axis{"axis", types::vector3,
+               "Direction of the joint axis in the world, of any length; goes with `at`."};
 const Key points{"points", types::two_points,
-                 "The joint's point on each body, in its coordinates. A rod's default: the reference points, "
-                 "for the world its origin.",
+                 "The joint point on each body, in that body's coordinates. Default for a rod: the reference "
+                 "points (for the world: its origin).",
                  "m"};
-const Key axes{
-    "axes", types::pair,
-    "One direction for each body, of any length, in its coordinates, or with `at` in the world: the "
-    "common axis (with `points`), or the two axes of joints that have one on each body: a universal joint "
-    "turns about both, which stand at right angles."};
-const Key line{
-    "axis", types::vector3,
-    "Direction of the line, or normal of the plane, on the first body, of any length: with `at` in the "
-    "world at the start, with `points` in coordinates of the first body."};
-const Key free_axis{"axis", types::vector3, "The axis at the start, world axes, of any length; or `axes`."};
-const Key angle{"coordinate", types::number, "What the joint's angle is called where the bodies are stated.",
+const Key axes{"axes", types::pair,
+               "One direction per body, of any length: in body coordinates with `points`, in the world with "
+               "`at`. For a joint with one common axis, this axis on each body. For a joint with an axis on "
+               "each body, these two axes; those of a universal joint are perpendicular."};
+const Key line{"axis", types::vector3,
+               "Direction of the line, or normal of the plane, on the first body, of any length: in the "
+               "world with `at`, in coordinates of the first body with `points`."};
+const Key free_axis{"axis", types::vector3,
+                    "Direction of the axis in the world, of any length. Excludes `axes`."};
+const Key angle{"coordinate", types::number, "Value of the joint angle where `[[body]]` places the bodies.",
                 "rad", "0"};
-const Key joints{"joints", types::names, "Two joints by name: the driving one and the one that follows."};
+const Key joints{"joints", types::names, "Names of two joints: first the driving one, then the driven one."};
 const Key displacement{"coordinate", types::number,
-                       "What the joint's displacement is called where the bodies are stated.", "m", "0"};
-const Key angle_rate{"rate", types::number, "Of the angle at the start; see also `[[start.coordinates]]`.",
+                       "Value of the joint displacement where `[[body]]` places the bodies.", "m", "0"};
+const Key angle_rate{"rate", types::number, "Initial rate of the angle; see also `[[start.coordinates]]`.",
                      "rad/s"};
 const Key displacement_rate{"rate", types::number,
-                            "Of the displacement at the start; see also `[[start.coordinates]]`.", "m/s"};
+                            "Initial rate of the displacement; see also `[[start.coordinates]]`.", "m/s"};
 
 Key frames_of_joint()
 {
-    return frames_key("frame of a joint",
-                      "Instead of all others: one frame for each body, in its coordinates. The third axis is "
-                      "the joint's. The first axes are held the same way by weld, prismatic and "
-                      "constant_velocity, and by a screw where its displacement is zero; others do not look "
-                      "at them.");
+    return frames_key(
+        "frame of a joint",
+        "One frame per body, in that body's coordinates, instead of all other placement keys. The third axis "
+        "of each frame is the joint axis. The first axes are aligned by weld, prismatic and "
+        "constant_velocity, and by a screw at zero displacement; other joints ignore them.");
 }
 
 /// A kind of the library with a maker that takes a frame.
@@ -96,90 +97,109 @@ Joint make_slot(const JointParts& p)
 std::vector<JointKind> kinds_of_one_axis()
 {
     const Key frames = frames_of_joint();
-    return {
-        {{"weld", "nothing moves (6 rows)", {at, points, frames}}, Location::at_point, as_it_stands<weld>},
-        {{"revolute", "turns about one axis (5)", {at, axis, points, axes, frames, angle, angle_rate}},
-         Location::on_axis,
-         by_frame<revolute>},
-        {{"prismatic",
-          "slides along one axis (5)",
-          {at, axis, points, axes, frames, displacement, displacement_rate}},
-         Location::on_axis,
-         as_it_stands<prismatic>},
-        {{"cylindrical", "turns about one axis and slides along it (4)", {at, axis, points, axes, frames}},
-         Location::on_axis,
-         by_frame<cylindrical>},
-        {{"screw",
-          "turns about one axis and slides along it in step (5)",
-          {at, axis, points, axes, frames,
-           Key{"pitch", types::number, "Metres a turn; positive: right-handed.", "m"}.needed()}},
-         Location::on_axis,
-         make_screw},
-        {{"planar",
-          "slides in a plane, whose normal is the axis, and turns in it (3)",
-          {at, axis, points, axes, frames, angle, angle_rate}},
-         Location::on_axis,
-         by_frame<planar>}};
+    return {{{"weld", "rigid connection (6 constraints)", {at, points, frames}},
+             Location::at_point,
+             as_it_stands<weld>},
+            {{"revolute",
+              "hinge: rotation about one axis (5 constraints)",
+              {at, axis, points, axes, frames, angle, angle_rate}},
+             Location::on_axis,
+             by_frame<revolute>},
+            {{"prismatic",
+              "slider: translation along one axis (5 constraints)",
+              {at, axis, points, axes, frames, displacement, displacement_rate}},
+             Location::on_axis,
+             as_it_stands<prismatic>},
+            {{"cylindrical",
+              "rotation about one axis and translation along it (4 constraints)",
+              {at, axis, points, axes, frames}},
+             Location::on_axis,
+             by_frame<cylindrical>},
+            {{"screw",
+              "rotation about one axis with proportional translation along it (5 constraints)",
+              {at, axis, points, axes, frames,
+               Key{"pitch", types::number, "Displacement per turn; positive for a right-handed thread.", "m"}
+                   .needed()}},
+             Location::on_axis,
+             make_screw},
+            {{"planar",
+              "translation in a plane and rotation about its normal, the joint axis (3 constraints)",
+              {at, axis, points, axes, frames, angle, angle_rate}},
+             Location::on_axis,
+             by_frame<planar>}};
 }
 
 /// What holds points, or the directions of two axes.
 std::vector<JointKind> kinds_of_points_and_axes()
 {
     static const Key frames = frames_of_joint();
-    return {{{"universal", "turns about two perpendicular axes (4)", {at, points, axes, frames}},
-             Location::on_two_axes,
-             by_frame<universal>},
-            {{"constant_velocity",
-              "two shafts that turn equally, however they are bent (4)",
-              {at, points, axes, frames}},
-             Location::on_two_axes,
-             as_it_stands<constant_velocity>},
-            {{"spherical", "one common point (3)", {at, points}}, Location::at_point, by_frame<spherical>},
-            {{"point_on_line",
-              "a point of the second body on a line of the first (2)",
-              {at, line, points, frames, displacement, displacement_rate}},
-             Location::on_line,
-             by_frame<point_on_line>},
-            {{"point_in_plane",
-              "a point of the second body in a plane of the first (1)",
-              {at, line, points, frames}},
-             Location::on_line,
-             by_frame<point_in_plane>},
-            {{"parallel_axes",
-              "an axis of each that stay parallel (2)",
-              {free_axis, axes, frames, angle, angle_rate}},
-             Location::along_axis,
-             by_frame<parallel_axes>},
-            {{"perpendicular_axes", "an axis of each that stay perpendicular (1)", {at, axes, frames}},
-             Location::along_two_axes,
-             by_frame<perpendicular_axes>},
-            {{"constant_angle",
-              "an axis of each at a constant angle (1)",
-              {at, axes, frames,
-               Key{"angle", types::number, "Between the axes. Default: what it is at the start.", "rad"}}},
-             Location::along_two_axes,
-             make_constant_angle}};
+    return {
+        {{"universal",
+          "Cardan joint: rotation about two perpendicular axes (4 constraints)",
+          {at, points, axes, frames}},
+         Location::on_two_axes,
+         by_frame<universal>},
+        {{"constant_velocity",
+          "two shafts that turn by equal angles, at any angle between them (4 constraints)",
+          {at, points, axes, frames}},
+         Location::on_two_axes,
+         as_it_stands<constant_velocity>},
+        {{"spherical", "ball joint: one common point (3 constraints)", {at, points}},
+         Location::at_point,
+         by_frame<spherical>},
+        {{"point_on_line",
+          "a point of the second body stays on a line of the first (2 constraints)",
+          {at, line, points, frames, displacement, displacement_rate}},
+         Location::on_line,
+         by_frame<point_on_line>},
+        {{"point_in_plane",
+          "a point of the second body stays in a plane of the first (1 constraint)",
+          {at, line, points, frames}},
+         Location::on_line,
+         by_frame<point_in_plane>},
+        {{"parallel_axes",
+          "an axis of each body; the two stay parallel (2 constraints)",
+          {free_axis, axes, frames, angle, angle_rate}},
+         Location::along_axis,
+         by_frame<parallel_axes>},
+        {{"perpendicular_axes",
+          "an axis of each body; the two stay perpendicular (1 constraint)",
+          {at, axes, frames}},
+         Location::along_two_axes,
+         by_frame<perpendicular_axes>},
+        {{"constant_angle",
+          "an axis of each body, at a constant angle to each other (1 constraint)",
+          {at, axes, frames,
+           Key{"angle", types::number,
+               "Angle between the axes. Default: their angle where `[[body]]` places the bodies.", "rad"}}},
+         Location::along_two_axes,
+         make_constant_angle}};
 }
 
 std::vector<JointKind> kinds_of_curves_and_distances()
 {
     return {
         {{"slot",
-          "a point of the second body on a curve of the first (2); for a straight one point_on_line, or "
-          "point_in_plane where nothing has to hold it sideways",
-          {Key{"curve", types::table, "Where the point slides."}.needed().holding(
+          "a point of the second body stays on a curve of the first (2 constraints); for a straight slot use "
+          "point_on_line, or point_in_plane if other joints hold the point sideways",
+          {Key{"curve", types::table, "The curve, on the first body."}.needed().holding(
                {"curve of a slot",
-                "A cubic spline through points, straight on beyond its ends.",
-                {Key{"points", types::rows, "Two or more, in coordinates of the first body.", "m"}.needed(),
-                 Key{"closed", types::truth, "Whether it comes back from the last point to the first.", "",
-                     "false"}}}),
-           Key{"point", types::point, "What slides, in coordinates of the second body.", "m", "[0, 0, 0]"}}},
+                "A cubic spline through points, continued by straight lines beyond its ends.",
+                {Key{"points", types::rows, "Two or more points, in coordinates of the first body.", "m"}
+                     .needed(),
+                 Key{"closed", types::truth, "Whether the curve continues from the last point to the first.",
+                     "", "false"}}}),
+           Key{"point", types::point, "The point that slides, in coordinates of the second body.", "m",
+               "[0, 0, 0]"}}},
          Location::on_curve,
          make_slot},
         {{"rod",
-          "fixed distance (1)",
-          {points, Key{"length", types::number, "Default: the distance of its points at the start.", "m"}
-                       .within(positive)}},
+          "constant distance between two points (1 constraint)",
+          {points,
+           Key{"length", types::number,
+               "Length of the rod. Default: the distance of its points where `[[body]]` places the bodies.",
+               "m"}
+               .within(positive)}},
          Location::at_points,
          make_rod}};
 }
@@ -189,18 +209,18 @@ std::vector<JointKind> kinds_of_coordinates()
 {
     return {
         {{"gear",
-          "the angle of one joint follows that of another (1)",
+          "the angle of one joint is proportional to that of another (1 constraint)",
           {joints, Key{"ratio", types::number,
-                       "Turns of the second joint for one turn of the first; negative for "
-                       "wheels that mesh outside, with axes that point the same way."}
+                       "Turns of the second joint per turn of the first; negative for external gears whose "
+                       "axes point the same way."}
                        .needed()}},
          Location::of_joints,
          [](const JointParts& p) { return gear(p.name, *p.one, *p.other, p.section.number("ratio"), p.X); }},
         {{"rack_and_pinion",
-          "the displacement of one joint follows the angle of another (1)",
+          "the displacement of one joint is proportional to the angle of another (1 constraint)",
           {joints, Key{"radius", types::number,
-                       "Displacement of the second joint for a turn of the first by one "
-                       "radian; of either sign.",
+                       "Displacement of the second joint per radian of the first: the pinion's radius, of "
+                       "either sign.",
                        "m"}
                        .needed()}},
          Location::of_joints,
@@ -225,9 +245,11 @@ const std::vector<JointKind>& joint_kinds()
 
 Key frames_key(const std::string& heading, const std::string& doc)
 {
-    std::vector<Key> keys{{"point", types::point, "In coordinates of the body.", "m", "[0, 0, 0]"}};
+    std::vector<Key> keys{
+        {"point", types::point, "Origin of the frame, in body coordinates.", "m", "[0, 0, 0]"}};
     for (const Key& key : orientation_keys()) keys.push_back(key);
-    return Key{"frames", types::tables, doc}.holding({heading, "Point and axes.", keys});
+    return Key{"frames", types::tables, doc}.holding(
+        {heading, "Origin and axes of a frame on a body.", keys});
 }
 
 }   // namespace livens::inline io_internal

@@ -290,7 +290,7 @@ Key coordinate_key()
 {
     return {"coordinate",
             types::choice,
-            "Which of the joint's: needed where it has both, else the one that it has.",
+            "Which coordinate of the joint. Needed only if the joint has both.",
             "",
             "",
             false,
@@ -334,28 +334,27 @@ Table joint_table()
         if (joint_kinds()[i].location == Location::of_joints)
             keys[0].required = true;
         else
-            keys.insert(
-                keys.begin(),
-                Key{"between", types::names,
-                    "Two different bodies, or one and `\"world\"`; names in `points` say them as well."}
-                    .needed_without("points"));
+            keys.insert(keys.begin(),
+                        Key{"between", types::names, two_bodies_or_points}.needed_without("points"));
     }
     return Table{
         "[[joint]]",
-        "A joint is placed in one of three ways. With `at`, by one point in the world, where the bodies "
-        "are at the start; `axis` or `axes` are then directions in the world, too. Or with `points`, one "
-        "point for each body in that body's coordinates (world coordinates for the world); `axes` are then "
-        "one direction for each body in the same coordinates. Or with `frames`, one for each body. Only "
-        "the last two can describe a start that does not fit. Reactions are what the joint exerts on the "
-        "second body of `between`, or on the only one of a joint to the world. Coordinates are those of "
-        "the second body against the first, right-handed about the axis, zero where the bodies are stated "
-        "unless `coordinate` says more; turns are counted.",
+        "A joint is placed in one of three ways. First, by `at`: one point in the world, where `[[body]]` "
+        "places the bodies; `axis` and `axes` are then world directions. Second, by `points`: one point per "
+        "body, in that body's coordinates (for the world: world coordinates); `axes` are then one direction "
+        "per body, in the same coordinates. Third, by `frames`: one frame per body. Only the second and "
+        "third way can describe bodies whose placement violates the joint. The reaction of a joint is the "
+        "force and torque that it exerts on the second body of `between`, or on the only body of a joint to "
+        "the world. Joint coordinates are those of the second body relative to the first, right-handed about "
+        "the axis. They are zero where `[[body]]` places the bodies, unless `coordinate` gives another "
+        "value; angles count full turns.",
         {Key{"name", types::text,
-             "Default: type and bodies, as in `rod world-upper`, where no other joint is called that."},
+             "Name of the joint. Default: type and bodies, as in `rod world-upper`, if no other joint has "
+             "this name."},
          Key{"type", types::choice, ""}.needed(),
          Key{"until", types::number,
-             "When it lets go: velocities go on, the reaction ends. Default: it never does. For lobatto and "
-             "radau.",
+             "Time at which the joint is released: velocities continue, the reaction ends. Default: never. "
+             "For the families lobatto and radau.",
              "s"}}}
         .with_kinds("type", std::move(all));
 }

@@ -63,39 +63,36 @@ Sensor make_energy(const SensorSources& s) { return energy_sensor(s.name, s.firs
 
 const std::vector<SensorKind>& sensor_kinds()
 {
+    const Key body = Key{"body", types::text, "Name of the body."}.needed();
     static const std::vector<SensorKind> all{
         {{"point",
-          "a point of a body: x, y, z in m, vx, vy, vz in m/s and ax, ay, az in m/s^2, world axes",
-          {Key{"body", types::text, "The body; a name as `point` says it as well."}.needed_without("point"),
-           Key{"point", types::point, "In body coordinates.", "m", "[0, 0, 0]"}}},
+          "position, velocity and acceleration of a point of a body, world axes: x, y, z in m, vx, vy, vz in "
+          "m/s, ax, ay, az in m/s^2",
+          {Key{"body", types::text, body_or_point}.needed_without("point"),
+           Key{"point", types::point, "Position of the point in body coordinates.", "m", "[0, 0, 0]"}}},
          make_point},
         {{"joint",
-          "the coordinates of a joint, their rates and accelerations: angle, angle_rate, angle_acceleration, "
+          "coordinates of a joint with rates and accelerations: angle, angle_rate, angle_acceleration, "
           "displacement, displacement_rate, displacement_acceleration",
-          {Key{"joint", types::text, "The joint."}.needed()}},
+          {Key{"joint", types::text, "Name of the joint."}.needed()}},
          make_joint_sensor},
         {{"relative",
-          "a point of the second body from one of the first, in axes of the first: x, y, z, their rates vx, "
-          "vy, vz and the rates of these, ax, ay, az",
-          {Key{"between", types::names,
-               "Two different bodies, or one and `\"world\"`; names in `points` say them as well."}
-               .needed_without("points"),
+          "position of a point of the second body relative to a point of the first, in axes of the first: x, "
+          "y, z, their rates vx, vy, vz and second derivatives ax, ay, az",
+          {Key{"between", types::names, two_bodies_or_points}.needed_without("points"),
            Key{"points", types::two_points,
-               "One on each body, in its coordinates. Default: the reference points, for the world its "
-               "origin.",
+               "One point per body, in that body's coordinates. Default: the reference points (for the "
+               "world: its origin).",
                "m"}}},
          make_relative},
         {{"load",
-          "what a load does: `force` of a spring between points (positive where it pulls) and its `length`; "
-          "`force` along the coordinate of springs and actuators on joints; `force_x` .. `torque_z` of a "
-          "bushing on "
-          "its u, and u as `displacement_x` .. `rotation_z`; `x`, `y`, `z` of others; and `power` on the "
-          "bodies, W",
-          {Key{"load", types::text, "The load."}.needed()}},
+          "forces and power of a load: for a spring between points its `force` (positive in tension) and "
+          "`length`; for springs and actuators on joints the `force` along the coordinate; for a bushing "
+          "`force_x` .. `torque_z`, and u as `displacement_x` .. `rotation_z`; for other loads `x`, `y`, "
+          "`z`; for all the `power` supplied to the bodies, W",
+          {Key{"load", types::text, "Name of the load."}.needed()}},
          make_load_sensor},
-        {{"energy",
-          "kinetic and potential energy of a body in J, the latter of its weight",
-          {Key{"body", types::text, "The body."}.needed()}},
+        {{"energy", "kinetic energy of a body and potential energy of its weight, in J", {body}},
          make_energy}};
     return all;
 }
@@ -135,11 +132,13 @@ void read_sensor(Builder& builder, const Section& section, std::unordered_set<st
 
 Table sensor_table()
 {
-    return Table{"[[sensor]]",
-                 "What is read of a motion: in the file as `sensor_value`, by `livens sample --sensor`, and "
-                 "all but those of loads and energies as inputs of expressions, as in `\"tip.x\"`.",
-                 {Key{"name", types::text, "Results and expressions refer to sensors by name."}.needed(),
-                  Key{"type", types::choice, ""}.needed()}}
+    return Table{
+        "[[sensor]]",
+        "A quantity to record. Readings are stored in the result file as `sensor_value` and printed by "
+        "`livens sample --sensor`. Expressions can use them, as in `\"tip.x\"`, except readings of loads and "
+        "energies.",
+        {Key{"name", types::text, "Name by which results and expressions refer to the sensor."}.needed(),
+         Key{"type", types::choice, ""}.needed()}}
         .with_kinds("type", {sensor_kinds().begin(), sensor_kinds().end()});
 }
 

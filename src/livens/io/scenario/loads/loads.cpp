@@ -76,10 +76,11 @@ void read_load(Builder& builder, const Section& load, const std::string& name, b
 
 Table load_table()
 {
-    return Table{"[[load]]",
-                 "Gravity is not a load: it stands at the top of the file.",
-                 {Key{"name", types::text, "For messages; default: type and bodies."},
-                  Key{"type", types::choice, ""}.needed()}}
+    return Table{
+        "[[load]]",
+        "Forces and torques on bodies. Gravity is not a load: set `gravity` at the top of the file.",
+        {Key{"name", types::text, "Name, for messages, sensors and results. Default: type and bodies."},
+         Key{"type", types::choice, ""}.needed()}}
         .with_kinds("type", {load_kinds().begin(), load_kinds().end()});
 }
 

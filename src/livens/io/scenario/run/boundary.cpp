@@ -121,41 +121,44 @@ Table start_table()
 {
     return {
         "[start]",
-        "What is known at the start, and what to do with a start that does not fit the joints. What is not "
-        "given there is a first guess: positions and velocities of `[[body]]` are needed all the same, and "
-        "joints placed by `at` refer to them.",
-        {given("state", "state: positions and velocities; positions or momenta: those alone, the others are "
-                        "first guesses; nothing: all are."),
-         choice<StartPolicy>(
-             "initial",
-             "check: refuse it, naming the joint; project: move positions and velocities to the nearest "
-             "that fit, in the metric of the masses."),
+        "Which quantities are prescribed at the initial time, and how to treat initial values that violate "
+        "the joints. Quantities that are not prescribed serve as a first guess. Positions in `[[body]]` are "
+        "needed in any case, since joints placed by `at` refer to them.",
+        {given("state", "state: positions and velocities; positions, or momenta: only these; nothing: "
+                        "neither. The rest is a first guess."),
+         choice<StartPolicy>("initial",
+                             "Treatment of initial values that violate a joint. check: an error that names "
+                             "the joint; project: positions and velocities are moved to the nearest "
+                             "admissible ones, where distances are weighted by mass (the mass metric)."),
          choice("joints", {"fixed", "fit"},
-                "fixed: as given; fit: points and axes on the second body of a joint are moved as little as "
-                "closes it where the bodies are placed, at most 1e-6 of the model length, which is reported: "
-                "for dimensions that are rounded."),
+                "Treatment of rounded joint dimensions. fixed: joints are used as given; fit: points and "
+                "axes on the second body of a joint are moved by the least amount that closes it where the "
+                "bodies are placed, at most 1e-6 of the model length; each change is reported."),
          Key{"coordinates", types::tables,
-             "Where joints stand at the start, and how fast they move: the bodies are led there along the "
-             "joints. Independent coordinates that are not listed stay as the bodies are stated; what no "
-             "coordinate tells moves by the least, in the metric of the masses."}
+             "Initial values and rates of joint coordinates. The bodies are moved there along the joints. "
+             "Independent coordinates that are not listed keep the values that follow from `[[body]]`; "
+             "anything that no coordinate determines moves as little as possible, in the mass metric."}
              .holding({"[[start.coordinates]]",
-                       "A coordinate of a joint at the start.",
-                       {Key{"joint", types::text, "The joint."}.needed(), coordinate_key(),
-                        Key{"value", types::number, "As the joint counts it. Default: as given.", "rad"}
+                       "Initial value and rate of one joint coordinate.",
+                       {Key{"joint", types::text, "Name of the joint."}.needed(), coordinate_key(),
+                        Key{"value", types::number,
+                            "Value, as the joint counts it. Default: the value that follows from `[[body]]`.",
+                            "rad"}
                             .or_in("m"),
-                        Key{"rate", types::number, "Default: that of the bodies' velocities.", "rad/s"}.or_in(
-                            "m/s")}})}};
+                        Key{"rate", types::number,
+                            "Rate. Default: the rate that follows from the bodies' velocities.", "rad/s"}
+                            .or_in("m/s")}})}};
 }
 
 Table end_table()
 {
-    return {
-        "[end]",
-        "What is known at the end of time, by `[body.end]` of every body. In all, positions and momenta must "
-        "be given once each, at one end or at both: a state at the end alone asks where the motion came "
-        "from, positions at both ends how to get from one to the other. Conditions at the end need the "
-        "family lobatto or mixed.",
-        {given("nothing", "Likewise, of `[body.end]`.")}};
+    return {"[end]",
+            "Which quantities are prescribed at the final time, by `[body.end]` of every body. `[start]` and "
+            "`[end]` together must prescribe two of these four: positions and momenta at the start, "
+            "positions and momenta at the end. With the state at the end alone, livens finds where the "
+            "motion came from; with positions at both ends, how to get from one to the other. Conditions at "
+            "the end need the family lobatto or mixed.",
+            {given("nothing", "As in `[start]`, for the values in `[body.end]`.")}};
 }
 
 void read_boundary(const Builder& builder, Conditions& boundary)

@@ -49,20 +49,15 @@ Method make_mixed(const Section& section)
 /// Number of elements solved together.
 Key window(std::string_view otherwise, const std::string& doc)
 {
-    return {"window",
-            types::integer_or_choice,
-            "Number of elements that are solved together" + doc,
-            "",
-            otherwise,
-            false,
-            {"all"},
-            {1, max_elements}};
+    return {
+        "window", types::integer_or_choice, "Number of elements solved together" + doc, "", otherwise, false,
+        {"all"},  {1, max_elements}};
 }
 
 Key basis()
 {
     Words words;
-    std::string doc = "Of all fields.";
+    std::string doc = "Basis functions of all fields.";
     for (const mixed::Basis& one : mixed::bases()) {
         doc += (words.empty() ? " " : "; ") + std::string(one.word) + ": " + std::string(one.doc);
         words.push_back(one.word);
@@ -73,74 +68,76 @@ Key basis()
 std::vector<Key> mixed_keys()
 {
     return {
-        Key{"degree", types::integer, "Of polynomials or splines.", "", "2"}.within({1, 8}),
+        Key{"degree", types::integer, "Degree of the polynomials or splines.", "", "2"}.within({1, 8}),
         basis(),
         choice<Mixed::Start>(
             "momentum",
-            "How the momentum at the ends enters. natural: as the boundary term of Hamilton's law, which "
-            "keeps the balances of momentum to rounding; strong: as a value of the momentum field."),
+            "How the momentum enters at the ends. natural: as the boundary term of Hamilton's law, which "
+            "satisfies the momentum balances to rounding; strong: as a value of the momentum field."),
         choice<Mixed::Multipliers>(
             "multipliers",
-            "Functions of the multipliers. equal: those of the positions; lower: one degree less."),
+            "Basis functions of the multipliers. equal: those of the positions; lower: one degree less."),
         choice<Mixed::EndMultiplier>(
-            "end_multiplier",
-            "The multiplier where the natural momentum of an end is defined, with equal multipliers: "
-            "smooth, of one degree less in that element, or zero, which holds the order of every degree "
-            "down to 4."),
+            "end_multiplier", "With natural momentum and equal multipliers, the multiplier at an end is not "
+                              "determined by the equations. smooth: its field has one degree less in that "
+                              "element; zero: it is zero, which limits the order to 4 for any degree."),
         Key{"gauss_points", types::integer,
-            "Of the quadrature in each element. Default: as many as integrate all polynomials exactly."}
+            "Number of Gauss points per element. Default: enough to integrate all polynomials exactly."}
             .within({1, 64}),
-        window("all", ", a block; positions and momenta at the end of a block begin the next. Conditions at "
-                      "both ends need all."),
-        choice<Mixed::Interfaces>(
-            "interfaces",
-            "Between blocks. carry: positions and momenta as they are, with what they violate; project: "
-            "moved to the nearest that fulfil rigidity and joints, so that the motion jumps a little."),
-        choice<Mixed::FirstGuess>(
-            "first_guess",
-            "Where Newton begins if the state is given at one end. march: from a lobatto march over the "
-            "same elements, which the motion is compared with in the end; steady: straight on, for short "
-            "blocks."),
+        window("all", ", called a block; positions and momenta at the end of a block are the initial values "
+                      "of the next. Conditions at both ends need \"all\"."),
+        choice<Mixed::Interfaces>("interfaces",
+                                  "Transfer between blocks. carry: positions and momenta are passed on "
+                                  "unchanged, with their constraint errors; project: they are projected onto "
+                                  "rigidity and joints, which makes the motion jump slightly."),
+        choice<Mixed::FirstGuess>("first_guess",
+                                  "First guess of Newton's iteration if the state is given at one end. "
+                                  "march: a lobatto solution on the same elements, with which the result is "
+                                  "finally compared; steady: constant velocities, for short blocks."),
         Key{"knots", types::list,
-            "Of splines: from `start` to `end`, ascending, the first and the last degree + 1 times, others "
-            "up to degree times. They make the elements: output times and breaks of loads must be among "
-            "them. Default: as smooth as possible on equal elements, with kinks where loads break.",
+            "Knot vector of the splines, ascending from `start` to `end`: the first and the last knot degree "
+            "+ 1 times, others up to degree times. The knots define the elements; output times and breaks of "
+            "loads must be among them. Default: splines as smooth as possible on equal elements, with kinks "
+            "at breaks of loads.",
             "s"},
         Key{"weights", types::list,
-            "Of NURBS, positive, one for each function: as many as knots, less degree + 1."},
-        choice<SparseBackend>("linear_solver",
-                              "Library for the sparse systems; umfpack is an option when livens is built.")};
+            "Weights of NURBS, positive, one per basis function: the number of knots minus (degree + 1)."},
+        choice<SparseBackend>(
+            "linear_solver",
+            "Library for sparse systems; umfpack is available if livens was built with it.")};
 }
 
 const std::vector<MethodKind>& method_kinds()
 {
     static const std::vector<MethodKind> all{
         {{"lobatto",
-          "space-time elements on Gauss-Lobatto points, order 2 degree at their ends",
-          {Key{"degree", types::integer, "Of the polynomial in each element.", "", "4"}.within({1, 16}),
-           window("1", ". Their equations are the same; conditions at both ends of time take all, whatever "
-                       "stands here.")}},
+          "space-time finite elements on Gauss-Lobatto points; their order at element ends is twice the "
+          "degree",
+          {Key{"degree", types::integer, "Polynomial degree of the elements.", "", "4"}.within({1, 16}),
+           window("1", "; it does not change the equations. With conditions at both ends all elements are "
+                       "solved together in any case.")}},
          make_lobatto},
         {{"radau",
-          "the same on Radau points, order 2 degree - 1, which damps vibrations that its elements do not "
-          "resolve; from the state at the start",
-          {Key{"degree", types::integer, "Of the polynomial in each element.", "", "4"}.within({1, 8})}},
+          "space-time finite elements on Radau points; their order at element ends is twice the degree minus "
+          "1; they damp vibrations that they do not resolve, and need the state at the initial time",
+          {Key{"degree", types::integer, "Polynomial degree of the elements.", "", "4"}.within({1, 8})}},
          make_radau},
         {{"auto",
-          "lobatto, or radau where fast decays, or vibrations that do not matter, would rule its elements; "
-          "with an `accuracy` only",
+          "lobatto, or radau if fast decay or irrelevant vibrations would dictate the length of lobatto's "
+          "elements; with `accuracy` only",
           {Key{"degree", types::integer,
-               "Of the polynomial in each element; radau takes 8 of it at most. Default: as the accuracy has "
-               "it."}
+               "Polynomial degree of the elements; radau uses at most 8. Default: chosen for the accuracy."}
                .within({1, 16})}},
          make_auto},
         {{"mixed",
-          "the elements of Hesch, Glas and Schuss, with positions, momenta and multipliers as separate "
-          "fields and weak rigidity, all solved at once or by blocks",
+          "the space-time elements of Hesch, Glas and Schuss: positions, momenta and multipliers are "
+          "independent fields, rigidity is imposed weakly, and elements are solved all at once or in blocks",
           mixed_keys()},
          make_mixed},
-        {{"midpoint", "classical stepping, order 2", {}}, [](const Section&) { return Method(Midpoint{}); }},
-        {{"endpoint", "classical stepping, order 1", {}}, [](const Section&) { return Method(Endpoint{}); }}};
+        {{"midpoint", "classical time stepping, order 2", {}},
+         [](const Section&) { return Method(Midpoint{}); }},
+        {{"endpoint", "classical time stepping, order 1", {}},
+         [](const Section&) { return Method(Endpoint{}); }}};
     return all;
 }
 
@@ -175,40 +172,42 @@ const std::vector<OptionKey>& option_keys()
 {
     static const std::vector<OptionKey> all{
         {Key{"tolerance", types::number,
-             "The iteration stops when its estimated error is below this fraction of the motion in the "
-             "element, at 1e-10 at the latest (lobatto, radau) unless `estimate` is \"none\" and `growth` is "
-             "off; mixed: of the model's length. With an accuracy of 1e-9 to 1e-8 it is 1e-15 at most, and "
-             "with a smaller one from the second try on.",
+             "Newton's iteration stops when its estimated error is below this fraction of the motion within "
+             "the element (mixed: of the model length). lobatto and radau use 1e-10 at most, unless "
+             "`estimate` is \"none\" and `growth` is off. With an accuracy from 1e-9 to 1e-8 they use 1e-15 "
+             "at most, with a smaller accuracy likewise from the second try on.",
              "", "1e-14"}
              .within({0, 0.1, true}),
          &SolveOptions::tolerance},
-        {Key{"max_iterations", types::integer, "Of Newton in one element; mixed: in one block.", "", "30"}
+        {Key{"max_iterations", types::integer,
+             "Maximum number of Newton iterations in one element (mixed: in one block).", "", "30"}
              .within({1, 1000}),
          &SolveOptions::max_iterations},
         {choice<SolveOptions::Estimate>(
              "estimate",
-             "What tells the error of the motion: a second solution on the same elements (of degree + 1, "
-             "lobatto from degree 4 under loads and drives, or on elements that hardly resolve the motion, "
-             "of degree + 2; mixed: lobatto of degree + 2, midpoint: lobatto(3), endpoint: radau(3)); what "
-             "its elements lose, grown as two neighbouring motions part (lobatto and radau with "
-             "`elements` and the state at the start, beside loads of time alone; too large by ten often, "
-             "nothing of velocities and reactions); or nothing."),
+             "Estimate of the error of the motion. second: the distance from a second solution on the same "
+             "elements, of degree + 1 (lobatto from degree 4: + 2 under loads and drives, or on elements "
+             "that barely resolve the motion; mixed: lobatto of degree + 2; midpoint: lobatto of degree 3; "
+             "endpoint: radau of degree 3). local: the local errors of the elements, amplified as two "
+             "neighbouring motions separate; for lobatto and radau with `elements`, a given initial state "
+             "and no loads but those that depend on time alone; often ten times too large, and without "
+             "velocities and reactions. none: no estimate."),
          &SolveOptions::estimate},
         {Key{"growth", types::truth,
-             "Whether neighbouring motions tell how perturbations of the start grow, and the horizon beyond "
-             "which double precision says nothing; half as costly as the motion, or up to three times "
-             "where bodies turn over. "
-             "Default: true with `accuracy` of `[time]`, else false."},
+             "Whether to measure, from neighbouring motions, how initial perturbations grow, and to report "
+             "the horizon beyond which double precision cannot predict the motion. Costs half as much as the "
+             "motion, or up to three times as much where bodies turn over. Default: true with `accuracy` of "
+             "`[time]`, else false."},
          &SolveOptions::growth},
         {Key{"looks", types::truth,
-             "Whether laws of loads are looked at inside of elements, between the points at which they are "
-             "evaluated; `false` takes all laws for smooth, and is there for comparison.",
+             "Whether load laws are inspected inside elements, between the points at which they are "
+             "evaluated. `false` treats all laws as smooth; it exists for comparison.",
              "", "true"},
          &SolveOptions::look_at_laws},
         {Key{"condition", types::truth,
-             "Whether condition numbers are computed: of the whole matrix of the last block (mixed), of that "
-             "of all elements, reduced to the free motions (lobatto), of that of the last element likewise "
-             "(radau). They take tens to hundreds of solutions more.",
+             "Whether condition numbers are computed: of the matrix of the last block (mixed), of all "
+             "elements (lobatto) or of the last element (radau), the latter two reduced to the motions that "
+             "the joints leave free. They cost as much as tens to hundreds of solutions.",
              "", "false"},
          &SolveOptions::condition}};
     return all;
@@ -256,11 +255,15 @@ void write_degree(JsonWriter& json, int degree) { write_count(json, "degree", de
 
 Table method_table()
 {
-    std::vector<Key> keys{{"family", types::choice,
-                           "With an `accuracy` auto, unless something else stands here", "", "lobatto"}};
+    std::vector<Key> keys{
+        {"family", types::choice, "Default: auto with `accuracy`, else lobatto", "", "lobatto"}};
     for (const OptionKey& one : option_keys()) keys.push_back(one.key);
-    return Table{"[method]", "How it is solved.", std::move(keys)}.with_kinds(
-        "family", {method_kinds().begin(), method_kinds().end()});
+    return Table{"[method]",
+                 "Integration method and its options. The defaults suit most models. Choose radau to damp "
+                 "fast vibrations or for strong damping, mixed to reproduce the elements of Hesch, Glas and "
+                 "Schuss, midpoint and endpoint for comparison with classical methods.",
+                 std::move(keys)}
+        .with_kinds("family", {method_kinds().begin(), method_kinds().end()});
 }
 
 void write_method(JsonWriter& json, const Method& method)

@@ -250,7 +250,7 @@ constexpr OtherKey other_keys[] = {
      "initialstep firststep intervals substeps",
      "", no_step},
     {"[time]", "", "tolerance tol rtol atol reltol abstol eps error precision toleranceerror", "accuracy",
-     "accuracy = 1e-8, the largest error of positions (in lengths of the model) and orientations (rad)"},
+     "accuracy = 1e-8, the largest error of positions (in model lengths) and orientations (rad)"},
     {"[time]", "",
      "duration t tend stop stoptime final tfinal finaltime tf until length endtime to tstop tmax "
      "simulationtime",

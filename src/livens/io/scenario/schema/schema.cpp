@@ -17,24 +17,26 @@ Table time_table()
 {
     return {
         "[time]",
-        "What is solved: from `start` to `end`, to an `accuracy`, from which time elements follow, or in at "
-        "least `elements` of them.",
-        {Key{"start", types::number, "Of the motion.", "s", "0"},
-         Key{"end", types::number, "Of the motion, after `start`.", "s"}.needed(),
+        "Time interval of the motion. It is divided into time elements: either such that the motion has a "
+        "given `accuracy`, or into a given number of `elements`.",
+        {Key{"start", types::number, "Initial time.", "s", "0"},
+         Key{"end", types::number, "Final time, later than `start`.", "s"}.needed(),
          Key{"elements", types::integer,
-             "Of equal length (end - start) / elements; output times and jumps of loads add some where they "
-             "do not fall on that grid. Instead of `accuracy`."}
+             "Number of time elements, each of length (end - start) / elements. Output times and jumps of "
+             "loads that do not fall on this grid add further elements. Excludes `accuracy`."}
              .within({1, max_elements}),
          Key{"output", types::number_or_list,
-             "Interval between output times (start and end are output times, too), or their ascending list. "
-             "They become element ends, where results are most accurate. Default: all element ends.",
+             "Interval between output times (start and end are included), or an ascending list of output "
+             "times. Each output time is an element end, where results are most accurate. Default: all "
+             "element ends.",
              "s"},
-         choice("breaks", {"from_loads", "ignore"}, "Whether elements end where loads jump or bend."),
+         choice("breaks", {"from_loads", "ignore"},
+                "from_loads: elements end at jumps and kinks of loads; ignore: they do not."),
          Key{"accuracy", types::number,
-             "Largest error of centres of mass, in lengths of the model, and of orientations, in rad, at all "
-             "element ends; elements and, unless it is stated, the degree follow from it. For the families "
-             "lobatto and radau with the state at the start. Default where neither `elements` nor `knots` of "
-             "`[method]` stand.",
+             "Permitted error at all element ends: of centres of mass relative to the model "
+             "length, and of orientations in rad. The elements, and the degree "
+             "unless given, are chosen accordingly. For the families lobatto and radau with the state at the "
+             "initial time. Used by default if neither `elements` nor `knots` of `[method]` is given.",
              "", "1e-6"}
              .within({0, 0.1, true})}};
 }
@@ -43,21 +45,22 @@ Table time_table()
 
 Table repeat_table()
 {
-    return {"[[repeat]]",
-            "Tables that stand `count` times, as if each copy were written behind those of the file: all of "
-            "the first index, then all of the next. In their strings `{i}`, `{i-1}` and the like are whole "
-            "numbers, computed from the index and parameters; in numbers and formulas the index is a number, "
-            "too: `position = [\"(i-0.5)*L\", 0, 0]`.",
-            {Key{"index", types::text, "What the index is called.", "", "i"},
-             Key{"count", types::integer, "How often."}.needed().within({1, max_bodies}),
-             Key{"first", types::integer, "The first index.", "", "1"}.within({-1000000, 1000000}),
-             Key{"body", types::templates, "Of bodies: `[[repeat.body]]`."},
-             Key{"point", types::templates, "Of points: `[[repeat.point]]`."},
-             Key{"include", types::templates, "Of includes: `[[repeat.include]]`."},
-             Key{"joint", types::templates, "Of joints: `[[repeat.joint]]`."},
-             Key{"drive", types::templates, "Of drives: `[[repeat.drive]]`."},
-             Key{"load", types::templates, "Of loads: `[[repeat.load]]`."},
-             Key{"sensor", types::templates, "Of sensors: `[[repeat.sensor]]`."}}};
+    return {
+        "[[repeat]]",
+        "Tables that are repeated `count` times, as if the copies were appended to the file: all tables of "
+        "the first index, then all of the next. In strings, `{i}`, `{i-1}` and similar stand for whole "
+        "numbers computed from the index and parameters. In numbers and formulas the index is a number, "
+        "too: `position = [\"(i-0.5)*L\", 0, 0]`.",
+        {Key{"index", types::text, "Name of the index.", "", "i"},
+         Key{"count", types::integer, "Number of copies."}.needed().within({1, max_bodies}),
+         Key{"first", types::integer, "First value of the index.", "", "1"}.within({-1000000, 1000000}),
+         Key{"body", types::templates, "Repeated bodies: `[[repeat.body]]`."},
+         Key{"point", types::templates, "Repeated points: `[[repeat.point]]`."},
+         Key{"include", types::templates, "Repeated includes: `[[repeat.include]]`."},
+         Key{"joint", types::templates, "Repeated joints: `[[repeat.joint]]`."},
+         Key{"drive", types::templates, "Repeated drives: `[[repeat.drive]]`."},
+         Key{"load", types::templates, "Repeated loads: `[[repeat.load]]`."},
+         Key{"sensor", types::templates, "Repeated sensors: `[[repeat.sensor]]`."}}};
 }
 
 namespace {
@@ -83,30 +86,36 @@ const Table& root_table()
 {
     static const Table table{
         "top of the file",
-        "Stands before the first table header; `format` comes first.",
+        "Keys above the first table header. `format` comes first.",
         {Key{"format", types::integer, "Version of this file format."}.needed().within({1, 1}),
-         Key{"title", types::text, "One line for people; copied to results."},
-         Key{"gravity", types::vector3, "Acceleration of free fall, world axes.", "m/s^2", "[0, 0, 0]"},
+         Key{"title", types::text, "A title; copied to the result file."},
+         Key{"gravity", types::vector3, "Gravitational acceleration, world axes.", "m/s^2", "[0, 0, 0]"},
          Key{"parameters", types::named_numbers,
-             "Names for numbers, each a number, a string with a unit or an expression of other parameters; "
+             "Named numbers: each is a number, a string with a unit, or an expression of other parameters; "
              "see [parameters](#parameters)."},
-         Key{"body", types::tables, "Bodies, at least one, here or in what is included."}
+         Key{"body", types::tables, "Bodies, at least one, here or in an included file."}
              .needed_without("include")
              .holding(body_table()),
-         Key{"world", types::table, "What is drawn of the world."}.holding(world_table()),
-         Key{"point", types::tables, "Places with names."}.holding(point_table()),
-         Key{"include", types::tables, "Other files, as parts of this one."}.holding(include_table()),
-         Key{"joint", types::tables, "Joints."}.holding(joint_table()),
-         Key{"drive", types::tables, "Coordinates, distances and points that follow time."}.holding(
-             drive_table()),
-         Key{"load", types::tables, "Forces, torques and springs."}.holding(load_table()),
-         Key{"sensor", types::tables, "What is read of the motion."}.holding(sensor_table()),
-         Key{"repeat", types::tables, "Bodies, joints, drives, loads and sensors that stand many times."}
-             .holding(repeat_table()),
-         Key{"time", types::table, "Interval, elements and output."}.needed().holding(time_table()),
-         Key{"method", types::table, "Discretisation and its tolerances."}.holding(method_table()),
-         Key{"start", types::table, "Conditions at the start."}.holding(start_table()),
-         Key{"end", types::table, "Conditions at the end of time."}.holding(end_table())}};
+         Key{"world", types::table, "Shapes drawn in the world; they have no effect on the motion."}.holding(
+             world_table()),
+         Key{"point", types::tables, "Named points of bodies or of the world."}.holding(point_table()),
+         Key{"include", types::tables, "Other files, included as parts of this model."}.holding(
+             include_table()),
+         Key{"joint", types::tables, "Joints between two bodies, or between a body and the world."}.holding(
+             joint_table()),
+         Key{"drive", types::tables,
+             "Prescribed motions: joint coordinates, distances or points as functions of time."}
+             .holding(drive_table()),
+         Key{"load", types::tables, "Forces, torques, springs and dampers."}.holding(load_table()),
+         Key{"sensor", types::tables, "Quantities to record: points, joint coordinates, loads, energies."}
+             .holding(sensor_table()),
+         Key{"repeat", types::tables, "Bodies, joints, drives, loads and sensors that are repeated."}.holding(
+             repeat_table()),
+         Key{"time", types::table, "Time interval, accuracy or elements, output times."}.needed().holding(
+             time_table()),
+         Key{"method", types::table, "Integration method and its options."}.holding(method_table()),
+         Key{"start", types::table, "Initial conditions."}.holding(start_table()),
+         Key{"end", types::table, "Conditions at the final time."}.holding(end_table())}};
     return table;
 }
 

@@ -92,6 +92,13 @@ inline constexpr Range not_negative{.low = 0};
 using Words = std::vector<std::string_view>;
 struct Table;
 
+// What names of points need not repeat.
+inline constexpr const char* two_bodies_or_points = "Names of two different bodies, first and second; one of "
+                                                    "them may be `\"world\"`. Not needed with names of "
+                                                    "points in `points`.";
+inline constexpr const char* body_or_point =
+    "Name of the body. Not needed with the name of a point in `point`.";
+
 inline constexpr std::string_view formulas_for_value =
     "a formula is given as 'expression', instead of 'value'";
 

@@ -43,7 +43,7 @@ std::string help_with_row(const Key& key, const Node& node, int count)
         return direction.empty() ? "" : name + " = " + direction;
     }
     if (key.name == "gravity" && is_number(node))
-        return "along the world's axes: gravity = [0, 0, " + to_text(-std::abs(node.number)) + "]";
+        return "along the world axes: gravity = [0, 0, " + to_text(-std::abs(node.number)) + "]";
     if (count != 3 || !(is_number(node) || node.kind == NodeKind::text)) return {};
     const std::string one = toml_of(node);
     // Lengths of equal edges; elsewhere nobody knows along which axis it is meant.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The first look at a text, before the parser: bytes that are none of UTF-8 text, the depth of nesting and
 // the number of values. The parser recurses and allocates by these, so a hostile file must be refused before
-// it (docs/program.md, Files of strangers).
+// it (docs/program.md, Untrusted files).
 #include <algorithm>
 
 #include "livens/io/json.h"
