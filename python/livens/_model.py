@@ -277,20 +277,20 @@ class Model(Tree):
             rotation_vector: Vector | None = None, parameters: Mapping[str, Any] | None = None) -> Added:
         """Adds all of another model, as it is now: bodies, points, joints, drives, loads and sensors.
 
-        It is moved and turned as one. What it says of the world's axes and places moves along: points and axes there,
-        forces in world axes, paths of drives, the axes of its sensors. Its ``title``, ``time`` and ``method`` do not
-        count; its gravity must be that of this model, or not stated: gravity does not turn.
+        It is displaced and rotated as a whole. Whatever it states in the world is displaced with it: points and axes,
+        forces in world axes, prescribed paths, and the axes of its sensors. Its ``title``, ``time`` and ``method`` are
+        not used; its gravity equals that of this model or is not stated: gravity is not rotated.
 
         Args:
-            other: What is added; later changes of it are not seen.
-            prefix: Before all of its names: with ``"left "`` its ``knee`` is ``left knee``.
-            position: Where its origin comes to be, m.
+            other: The model that is added; later changes of it have no effect here.
+            prefix: Prefix of all names: with ``"left "``, ``knee`` becomes ``left knee``.
+            position: Position of its origin, m.
             rotation: A Rotation of SciPy or a matrix; or ``directors``, ``quaternion``, ``rotation_vector``, one of
                 them, as bodies have it.
             directors: Likewise.
             quaternion: Likewise, (w, x, y, z).
             rotation_vector: Likewise, rad.
-            parameters: Values that its parameters have instead of their own, as expressions of those of this model.
+            parameters: Values for its parameters: numbers, or expressions of parameters of this model.
 
         Returns:
             Its names here, by those that it has itself.

@@ -26,10 +26,10 @@ enum class Form : std::uint8_t {
     row,           ///< `count` numbers
     rows,          ///< `count` rows of 3 numbers
     table,
-    tables,         ///< array of tables
-    model,          ///< a table that holds what a file would, read by itself
-    templates,      ///< array of tables of the root's key of that name, with braces: see without_repeats()
-    named_numbers   ///< a table of numbers and expressions under names of the user's choice: see Parameters
+    tables,          ///< array of tables
+    templates,       ///< array of tables of the root's key of that name, with braces: see without_repeats()
+    named_numbers,   ///< a table of numbers and expressions under names of the user's choice: see Parameters
+    model            ///< a table that holds what a file would, read by itself
 };
 
 struct KeyType {
