@@ -339,25 +339,26 @@ TEST(Include, ParametersOfAFileAreSetByTheOneThatIncludesIt)
     const Folder folder;
     folder.write(
         "parts/part.toml",
-        "format = 1\nparameters = { r = \"50 mm\", m = \"2*k\", k = 3 }\n[[body]]\nname = \"ball\"\nshape = "
+        "format = 1\nparameters = { r = \"50 mm\", weight = \"2*n\", n = 3 }\n[[body]]\nname = "
+        "\"ball\"\nshape = "
         "{ "
-        "sphere = \"r\" }\nmass = \"m\"\n[[point]]\nname = \"top\"\nbody = \"ball\"\nposition = [0, 0, "
+        "sphere = \"r\" }\nmass = \"weight\"\n[[point]]\nname = \"top\"\nbody = \"ball\"\nposition = [0, 0, "
         "\"r\"]\n");
     const std::string whole =
         "format = 1\nparameters = { R = \"1 m\" }\n[[include]]\nfile = \"parts/part.toml\"\nprefix = \"a.\"\n"
         "parameters = { r = \"R/4\" }\n[[include]]\nfile = \"parts/part.toml\"\nprefix = \"b.\"\nposition = "
         "[\"2*R\", "
-        "0, 0]\nparameters = { k = 5, r = 100 }\n[time]\nend = 1\n";
+        "0, 0]\nparameters = { n = 5, r = 0.1 }\n[time]\nend = 1\n";
     const ScenarioResult r = folder.read(whole);
     ASSERT_TRUE(r.scenario) << shown(r);
     EXPECT_TRUE(r.diagnostics.empty()) << shown(r);
     const Model& m = r.scenario->model;
-    EXPECT_EQ(m.points()[0].position[2], 0.25);
-    EXPECT_EQ(m.points()[1].position[2], 0.1) << "a plain number has the unit of the file: mm";
-    EXPECT_EQ(m.bodies()[0].mass(0, 0), 6);
-    EXPECT_EQ(m.bodies()[1].mass(0, 0), 10);
+    EXPECT_DOUBLE_EQ(m.points()[0].position[2], 0.25);
+    EXPECT_DOUBLE_EQ(m.points()[1].position[2], 0.1) << "a plain number is in SI units";
+    EXPECT_DOUBLE_EQ(m.bodies()[0].mass(0, 0), 6);
+    EXPECT_DOUBLE_EQ(m.bodies()[1].mass(0, 0), 10);
     EXPECT_EQ(m.bodies()[1].X(0, 0), 2);
-    const std::string unknown = test::replaced(whole, "k = 5", "q = 5");
+    const std::string unknown = test::replaced(whole, "n = 5", "q = 5");
     expect_one(folder.read(unknown), "parameter-set", "main.toml", line_of(unknown, "q = 5"), "'q'");
     const std::string wrong = test::replaced(whole, "R/4", "R/4 + 1 s");
     expect_one(folder.read(wrong), "unit", "main.toml", line_of(wrong, "R/4"));
