@@ -6,126 +6,17 @@
 #include <array>
 #include <cmath>
 
-#include "livens/base/elementary.h"
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/multibody/loads/load_coordinate.h"
 #include "livens/multibody/loads/load_laws.h"
 #include "livens/multibody/loads/load_values.h"
+#include "livens/multibody/loads/relative_spin.h"
+#include "livens/multibody/loads/rotation_vector.h"
 
 namespace livens {
 
 namespace {
-
-// The rotation vector is r = psi s with s = sin(angle) times the axis and c = cos(angle), all of which are
-// forms in X: psi = angle / |s| = atan2(sqrt(sigma), c) / sqrt(sigma), sigma = s . s.
-
-/// A number and its derivatives by s1, s2, s3 and c.
-struct Dual {
-    double value = 0;
-    std::array<double, 4> by{};
-
-    friend Dual operator+(Dual a, const Dual& b)
-    {
-        a.value += b.value;
-        for (std::size_t i = 0; i < 4; ++i) a.by[i] += b.by[i];
-        return a;
-    }
-    friend Dual operator*(const Dual& a, const Dual& b)
-    {
-        Dual product{a.value * b.value, {}};
-        for (std::size_t i = 0; i < 4; ++i) product.by[i] = a.value * b.by[i] + a.by[i] * b.value;
-        return product;
-    }
-};
-
-/// psi by sigma and c, to the second derivatives.
-struct Psi {
-    double value, by_sigma, by_c, by_sigma_sigma, by_sigma_c, by_c_c;
-};
-
-Psi psi(double sigma, double c)
-{
-    // 1 on the rotation group, but not between the nodes of an element.
-    const double r2 = sigma + c * c;
-    Psi p{};
-    p.by_c = -1 / r2;
-    p.by_sigma_c = 1 / (r2 * r2);
-    p.by_c_c = 2 * c / (r2 * r2);
-    // Below a hundredth ten terms of the series leave 1e-20; above, the closed forms lose few digits.
-    const double x = sigma / (c * c);
-    if (c > 0 && x < 0.01) {   // the closed forms cancel: series of atan(sqrt(x)) / sqrt(x)
-        double power = 1, sign = 1;
-        for (int k = 0; k < 10; ++k, power *= x, sign = -sign) {
-            p.value += sign * power / (2 * k + 1);
-            p.by_sigma -= sign * power * (k + 1) / (2 * k + 3);
-            p.by_sigma_sigma += sign * power * (k + 1) * (k + 2) / (2 * k + 5);
-        }
-        p.value /= c;
-        p.by_sigma /= c * c * c;
-        p.by_sigma_sigma /= c * c * c * c * c;
-        return p;
-    }
-    const double s = std::sqrt(sigma);
-    p.value = arc_tangent(s, c) / s;
-    p.by_sigma = (c / r2 - p.value) / (2 * sigma);
-    p.by_sigma_sigma = (-c / (r2 * r2) - 3 * p.by_sigma) / (2 * sigma);
-    return p;
-}
-
-}   // namespace
-
-inline namespace multibody_internal {
-
-TapeVector turn_of_sine(TapeNumber sigma, TapeNumber c)
-{
-    return {c.tape, c.tape->add({TapeKind::turn, -1, sigma.place, c.place, -1, 0})};
-}
-
-void turn_of_sine(double sigma, double c, double* both)
-{
-    const Psi p = psi(sigma, c);
-    both[0] = p.value;
-    both[1] = 2 * p.by_sigma;
-}
-
-}   // namespace multibody_internal
-
-namespace {
-
-/// r, and the matrix of its derivatives by s and c.
-struct Turn {
-    std::array<Dual, 3> r;
-    std::array<std::array<Dual, 4>, 3> J;
-};
-
-Turn turn_of(const double* q)
-{
-    const auto variable = [&](std::size_t i) {
-        Dual d{q[i], {}};
-        d.by[i] = 1;
-        return d;
-    };
-    const std::array<Dual, 4> v{variable(0), variable(1), variable(2), variable(3)};
-    const Dual sigma = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-    const Psi p = psi(sigma.value, v[3].value);
-    const auto composed = [&](double value, double by_sigma, double by_c) {
-        Dual d{value, {}};
-        for (std::size_t i = 0; i < 4; ++i) d.by[i] = by_sigma * sigma.by[i] + by_c * v[3].by[i];
-        return d;
-    };
-    const Dual of = composed(p.value, p.by_sigma, p.by_c), twice{2, {}};
-    const Dual by_sigma = composed(p.by_sigma, p.by_sigma_sigma, p.by_sigma_c);
-    const Dual by_c = composed(p.by_c, p.by_sigma_c, p.by_c_c);
-    Turn turn;
-    for (std::size_t k = 0; k < 3; ++k) {
-        turn.r[k] = of * v[k];
-        for (std::size_t l = 0; l < 3; ++l) turn.J[k][l] = twice * by_sigma * v[k] * v[l];
-        turn.J[k][k] = turn.J[k][k] + of;
-        turn.J[k][3] = by_c * v[k];
-    }
-    return turn;
-}
 
 /// Coordinates are three displacements, s1, s2, s3 and c.
 struct BushingLaw {
@@ -281,16 +172,111 @@ struct BushingLaw {
     }
 };
 
-/// What acts on u, as the law has it, and u.
-void add_readings(const BushingLaw& at, LoadParts& parts)
+/// Springs by u and dampers by (displacement', w): coordinates are those of the springs, then R of the
+/// dampers, which share the displacements.
+struct SpinningBushing {
+    BushingLaw springs;
+    SpinDamping dampers;
+    static constexpr std::size_t n = BushingLaw::n + 9;
+
+    static std::size_t place(std::size_t i) { return i < 3 ? i : BushingLaw::n + i - 3; }
+    static LawArguments springs_see(const LawArguments& at)
+    {
+        return {at.at, at.values.first(BushingLaw::n), at.rates.first(BushingLaw::n)};
+    }
+    /// Calls see(arguments of the dampers).
+    template <class See>
+    static auto dampers_see(const LawArguments& at, const See& see)
+    {
+        std::array<double, 12> values{}, rates{};
+        for (std::size_t i = 0; i < 12; ++i) {
+            values[i] = at.values[place(i)];
+            rates[i] = at.rates[place(i)];
+        }
+        return see(LawArguments{at.at, values, rates});
+    }
+    void operator()(const LawArguments& at, std::span<double> factors, std::span<double> slopes) const
+    {
+        constexpr std::size_t k = BushingLaw::n;
+        std::array<double, 12> of_dampers{};
+        std::array<double, 2 * k * k> by_springs{};
+        std::array<double, 12 * 24> by_dampers{};
+        const bool asks = !slopes.empty();
+        std::ranges::fill(factors, 0.0);
+        std::ranges::fill(slopes, 0.0);
+        springs(springs_see(at), factors.first(k),
+                asks ? std::span<double>(by_springs) : std::span<double>());
+        dampers_see(at, [&](const LawArguments& seen) {
+            dampers(seen, of_dampers, asks ? std::span<double>(by_dampers) : std::span<double>());
+        });
+        for (std::size_t i = 0; i < 12; ++i) factors[place(i)] += of_dampers[i];
+        for (std::size_t i = 0; asks && i < 12; ++i)
+            for (std::size_t j = 0; j < 12; ++j)
+                for (std::size_t rate = 0; rate < 2; ++rate)
+                    slopes[2 * n * place(i) + rate * n + place(j)] += by_dampers[24 * i + 12 * rate + j];
+        for (std::size_t i = 0; asks && i < k; ++i)
+            for (std::size_t j = 0; j < k; ++j)
+                for (std::size_t rate = 0; rate < 2; ++rate)
+                    slopes[2 * n * i + rate * n + j] += by_springs[2 * k * i + rate * k + j];
+    }
+    static LawOnTape dampers_on(const LawOnTape& at)
+    {
+        return {at.tape, [at](std::size_t i) { return at.value(place(i)); },
+                [at](std::size_t i) { return at.rate(place(i)); }};
+    }
+    void record(const LawOnTape& at, std::span<TapeNumber> factors) const
+    {
+        std::vector<TapeNumber> of_dampers(12, TapeNumber{&at.tape});
+        springs.record(at, factors.first(BushingLaw::n));
+        dampers.record(dampers_on(at), of_dampers);
+        for (std::size_t i = 0; i < 12; ++i)
+            factors[place(i)] = i < 3 ? factors[i] + of_dampers[i] : of_dampers[i];
+    }
+    double force(const LawArguments& at, int k) const
+    {
+        const LawArguments seen = springs_see(at);
+        return springs.force(springs.motion(seen), k) +
+               dampers_see(at, [&](const LawArguments& q) { return dampers.force(q)[k]; });
+    }
+};
+
+/// How the parts of the load are made of one law; `springs` sees the first coordinates, `force` is on u.
+template <class Law, class Force>
+void set_law(LoadParts& parts, const Law& law, const BushingLaw& springs, const Force& force)
 {
+    parts.law = law;
+    parts.recorded_law = [law](const LawOnTape& on, std::span<TapeNumber> factors) {
+        law.record(on, factors);
+    };
+    parts.potential = [springs](const LawArguments& q) { return springs.potential(q); };
+    // What acts on u, as the law has it, and u.
     for (int k = 0; k < 6; ++k) {
         const std::string letter(1, "xyz"[k % 3]);
         parts.readings.push_back({(k < 3 ? "force_" : "torque_") + letter, k < 3 ? "N" : "N m",
-                                  [at, k](const LawArguments& q) { return at.force(at.motion(q), k); }});
+                                  [force, k](const LawArguments& q) { return force(q, k); }});
         parts.readings.push_back({(k < 3 ? "displacement_" : "rotation_") + letter, k < 3 ? "m" : "rad",
-                                  [at, k](const LawArguments& q) { return at.motion(q).u[k]; }});
+                                  [springs, k](const LawArguments& q) { return springs.motion(q).u[k]; }});
     }
+}
+
+/// Damping by the rate of u.
+void add_law(LoadParts& parts, const BushingLaw& law)
+{
+    set_law(parts, law, law, [law](const LawArguments& q, int k) { return law.force(law.motion(q), k); });
+    parts.power = [law](const LawArguments& q) { return law.power(q); };
+    parts.recorded_power = [law](const LawOnTape& on) { return law.recorded_power(on); };
+}
+
+/// Damping by the angular velocity.
+void add_law(LoadParts& parts, const SpinningBushing& law)
+{
+    set_law(parts, law, law.springs, [law](const LawArguments& q, int k) { return law.force(q, k); });
+    parts.power = [law](const LawArguments& at) {
+        return law.dampers_see(at, [&](const LawArguments& q) { return law.dampers.power(q); });
+    };
+    parts.recorded_power = [law](const LawOnTape& on) {
+        return law.dampers.recorded_power(SpinningBushing::dampers_on(on));
+    };
 }
 
 /// Whether x . A x may be negative, by what is left of the diagonal in Cholesky's elimination.
@@ -364,21 +350,20 @@ Load bushing(const std::string& name, int first, const BodyFrame& frame_first, i
     // c = (a1.b1 + a2.b2 + a3.b3 - 1) / 2, the cosine of the turn between both triads.
     static_cast<PairForm&>(trace) = sum(trace, 1, product(1, 1));
     add(scaled(sum(trace, 1, product(2, 2)), 0.5, -0.5));
-    for (LawCoordinate& q : parts.coordinates) {
+    for (LawCoordinate& q : parts.coordinates)
         // The law takes the values of the forms, not their changes since the start.
         q.at_stated =
             form_value(q.coordinate.forms[0], q.coordinate.forms[0].body_i, q.coordinate.forms[0].body_j, X);
-        parts.units.push_back(unit_along(name, q.coordinate, X));
-    }
-    const BushingLaw at{law};
-    parts.law = at;
-    parts.recorded_law = [at](const LawOnTape& on, std::span<TapeNumber> factors) { at.record(on, factors); };
     parts.is_smooth = true;   // up to half a turn, where it ends
-    parts.depends_on_rates = at.of_rates();
-    parts.potential = [at](const LawArguments& q) { return at.potential(q); };
-    parts.power = [at](const LawArguments& q) { return at.power(q); };
-    parts.recorded_power = [at](const LawOnTape& on) { return at.recorded_power(on); };
-    add_readings(at, parts);
+    parts.depends_on_rates = BushingLaw{law}.of_rates();
+    if (law.by_angular_velocity) {
+        for (const LawCoordinate& q : turned_axes(first, frame_first.axes, second, frame_second.axes, X))
+            parts.coordinates.push_back(q);
+        add_law(parts, SpinningBushing{{{law.stiffness, {}, law.preload}}, {law.damping, true}});
+    } else {
+        add_law(parts, BushingLaw{law});
+    }
+    for (const LawCoordinate& q : parts.coordinates) parts.units.push_back(unit_along(name, q.coordinate, X));
     return modulated(name, "bushing", parts, X);
 }
 
