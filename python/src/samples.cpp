@@ -67,8 +67,8 @@ private:
     std::map<std::string, Column> columns_;
 };
 
-/// From which side an instant is seen: those of `before` that are not zero are seen from the left; of a single
-/// instant or where there is no list, from the right.
+/// From which side an instant is seen: those of `before` that are not zero are seen from the left; of a
+/// single instant or where there is no list, from the right.
 Side side_of(const Times& before, std::size_t i)
 {
     return before.size() > i && before.data()[i] != 0 ? Side::left : Side::right;
@@ -164,7 +164,8 @@ nb::dict bodies_at(const Result& r, const Times& times)
     const Model& model = r.scenario->model;
     std::vector<Vector4> previous = upright(model);
     declare_bodies(c, previous.size());
-    at_all(times, [&](double t, std::size_t) { add_bodies(c, sample_bodies(model, r.run.motion, t), previous); });
+    at_all(times,
+           [&](double t, std::size_t) { add_bodies(c, sample_bodies(model, r.run.motion, t), previous); });
     return c.take();
 }
 
@@ -453,18 +454,17 @@ nb::object snapped(const Result& r, const Times& times)
 
 }   // namespace
 
-std::vector<std::string> drive_columns(const Result& r)
+std::map<std::string, std::string> drive_columns(const Result& r)
 {
-    std::vector<std::string> names;
+    std::map<std::string, std::string> names;
     const Model& model = r.scenario->model;
     if (r.run.motion.multipliers.empty() && r.run.motion.end_multipliers.empty()) return names;
     for (std::size_t j = 0; j < model.joints().size(); ++j) {
         const Joint& joint = model.joints()[j];
         if (joint.type != "drive") continue;
         if (const auto effort = drive_effort(joint))
-            names.push_back((effort->coordinate.is_angle() ? "drive_torque " : "drive_force ") +
-                            std::to_string(j));
-        names.push_back("power " + std::to_string(j));
+            names["effort " + std::to_string(j)] = effort->coordinate.is_angle() ? "N m" : "N";
+        names["power " + std::to_string(j)] = "W";
     }
     return names;
 }

@@ -65,7 +65,9 @@ std::vector<QuantitySeries> usual_series(const Quantities& quantities)
 {
     std::vector<QuantitySeries> all;
     for (const NamedQuantity& q : quantities.all())
-        if (q.of != QuantityOf::body && q.of != QuantityOf::model && !q.is_repeated) all.push_back({q});
+        if (q.of != QuantityOf::body && q.of != QuantityOf::model && !q.is_repeated &&
+            q.what != "limit_stiffness")
+            all.push_back({q});
     for (const NamedQuantity& q : quantities.all())
         if (q.of == QuantityOf::model) all.push_back({q});
     return all;
