@@ -29,6 +29,7 @@ from ._generated import Body, Drive, Joint, Load, MethodOptions, Sensor
 from ._functions import BodyState
 from ._load import load
 from ._model import Model
+from ._parameters import Parameters
 from ._parts import BodySeries, JointSeries, LoadSeries, Parts, PointSeries, ReadingSeries, SensorSeries
 from ._rest import (Equilibrium, EquilibriumError, Linearisation, ModeBody, ModeJoint, Modes, RestBody, RestJoint,
                     StateMatrices)
@@ -41,7 +42,7 @@ from ._values import Condition, Method, Shape, momenta, positions, state, table,
 __all__ = [
     "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Diagnostic", "Drive", "Entry", "Equilibrium",
     "EquilibriumError", "Extremes", "InputError", "Joint", "JointSeries", "Linearisation", "Load", "LoadSeries", "Method",
-    "MethodOptions", "ModeBody", "ModeJoint", "Model", "ModelWarning", "Modes", "Names", "Parts", "Peak", "Place", "PointSeries",
+    "MethodOptions", "ModeBody", "ModeJoint", "Model", "ModelWarning", "Modes", "Names", "Parameters", "Parts", "Peak", "Place", "PointSeries",
     "ReadingSeries", "RestBody", "RestJoint", "ResultFileError", "Section", "Sensor", "SensorSeries", "Series",
     "Shape", "SlowWarning", "Solution", "SolveError", "SolveWarning", "StateMatrices", "__version__", "compare",
     "explain", "load", "load_solution", "momenta", "positions", "solve", "solve_many", "state", "table", "visual",

@@ -332,7 +332,7 @@ void add_results(nb::module_& m)
         .def("report", &report, nb::arg("name"), nb::arg("other").none(), nb::arg("other_name"))
         .def("to_bytes", &to_bytes)
         .def("export_to", &export_to, nb::arg("format"), nb::arg("result"), nb::arg("file"), nb::arg("force"),
-             nb::arg("instants"))
+             nb::arg("instants"), nb::arg("units"), nb::arg("picture"))
         .def("inputs", &inputs);
     m.def("load_result", &load_result, nb::arg("file"));
     m.def("from_bytes", &from_bytes, nb::arg("bytes"));

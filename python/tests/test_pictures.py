@@ -64,7 +64,7 @@ def test_videos_and_stills(rod: lv.Solution, tmp_path: pathlib.Path) -> None:
 def test_what_cannot_be_drawn_is_told(rod: lv.Solution, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for wrong in ({"size": (8, 8)}, {"fps": 1000}, {"start": 9}, {"start": 1, "end": 0.5}, {"duration": -1}):
         with pytest.raises(lv.InputError) as error:
-            rod.export(tmp_path / "x.webm", **wrong)   # type: ignore[arg-type]
+            rod.export(tmp_path / "x.webm", **wrong)
         assert error.value.code == "picture"
     with pytest.raises(lv.InputError, match="no view"):
         rod.export(tmp_path / "x.png", view="back")

@@ -173,7 +173,14 @@ async function gif(
   }
 }
 
-export function record(
+/** Beyond its ends polynomials of a motion mean nothing. */
+function check_inside({ run: { motion } }: Screen, instants: number[]) {
+  for (const t of instants)
+    if (motion.clamp(t) !== t)
+      throw new Error(`${t} s is outside the motion, which is from ${motion.start} s to ${motion.end} s`);
+}
+
+export async function record(
   kind: Kind,
   screen: Screen,
   look: Look,
@@ -181,7 +188,8 @@ export function record(
   told: Told = () => {},
   signal: AbortSignal = new AbortController().signal,
 ): Promise<Blob> {
+  check_inside(screen, is_still(kind) ? [course.from] : [course.from, course.to]);
   if (kind === "png") return still(screen, look, course.from);
-  if (kind === "svg") return Promise.resolve(sketch(screen, look, course.from));
+  if (kind === "svg") return sketch(screen, look, course.from);
   return kind === "gif" ? gif(screen, look, course, told, signal) : video(screen, look, course, told, signal);
 }

@@ -179,6 +179,8 @@ const tests = {
     );
     for (const side of [8, 9000, 100.5])
       await assert.rejects(record(page, "png", { width: side }), /have 16 to 8192 pixels/);
+    for (const from of [-0.1, 5.1])
+      await assert.rejects(record(page, "png", {}, { from }), /outside the motion/);
     assert.deepEqual(size(await record(page, "png", { width: 3840, height: 2160 })), [3840, 2160]);
     assert.deepEqual(page.problems, []);
   },

@@ -37,6 +37,7 @@ std::vector<std::string> words()
     std::istringstream all(
         "nan -inf 1e308 -1e-308 1e400 0 -0.0 9223372036854775807 1_0 0x7f \"\" \"5mm\" \"world\" [] {} [[]] true "
         "[[1,0,0],[0,1,0]] 1979-05-27 [body.end] [[joint]] [[load]] [end] given=\"state\" type=\"universal\" "
+        "[parameters] [[repeat]] \"2*L\" \"1/0\" \"{i}\" \"{\" \"(i-1)*3mm\" \"1m+1kg\" count=10000 L=\"2*L\" "
         "family=\"mixed\" basis=\"nurbs\" window=\"all\" shape={point=true} \\u202e \xc2\x85 \xe2\x80\xae "
         "\xc3\xa4 \xff \x01 \"\"\" ''' . = [ ] { } , \" #");
     std::vector<std::string> odd{"\r\n", "\t", "\n"};

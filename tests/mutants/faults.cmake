@@ -1139,8 +1139,8 @@ livens_mutant(NAME meant_key_lacks
 # Extremes of the motion, and what is accelerated.
 livens_mutant(NAME extremes_are_those_of_samples
               FILE diagnostics/extremes.cpp
-              OLD [[if (better_) sample = better_(t);]]
-              NEW [[;]]
+              OLD [[if (!look.has_better()) return {{place.value, place.at}, 0};]]
+              NEW [[return {{place.value, place.at}, 0};]]
               TESTS_OF unit_spacetime
               MUST_FAIL Extremes.AreThoseOfTheFormula)
 livens_mutant(NAME accelerations_forget_what_turns
@@ -1193,3 +1193,59 @@ livens_mutant(NAME bases_from_before_the_pull
               NEW [[if (!are_placed) return true;]]
               TESTS_OF convergence
               MUST_FAIL LobattoEnds.EveryRateNearbyFindsTheMotion)
+
+# What has no dimension of its own may be added to anything: 0.4 and 30 mm.
+livens_mutant(NAME unlike_quantities_are_added
+              FILE io/scenario/text/amount.cpp
+              OLD [[if (a.is_zero || b.is_zero) {]]
+              NEW [[if (!a.has_unit || !b.has_unit) {]]
+              TESTS_OF unit_io
+              MUST_FAIL Computed.DimensionsThatDoNotGoTogetherAreBothSaid)
+
+# Angles that are dropped everywhere: 3 Hz for 3 rad/s.
+livens_mutant(NAME hertz_for_angular_velocity
+              FILE io/scenario/text/amount.cpp
+              OLD [[(has_no_angle && !amount.has_hertz)]]
+              NEW [[has_no_angle]]
+              TESTS_OF unit_io
+              MUST_FAIL Computed.AnglesKeepTheirFactorAndAreNumbersOtherwise)
+
+# The quotient of two lengths for a length.
+livens_mutant(NAME ratio_for_length
+              FILE io/scenario/text/amount.cpp
+              OLD [[if (!amount.has_unit && amount.is_pure()]]
+              NEW [[if (amount.is_pure()]]
+              TESTS_OF unit_io
+              MUST_FAIL Computed.DimensionsThatDoNotGoTogetherAreBothSaid)
+
+# The shortest unit instead of the longest: "2 N/m" as 2 N over the parameter m.
+livens_mutant(NAME shortest_unit
+              FILE io/scenario/text/computed.cpp
+              OLD [[for (auto end = ends.rbegin(); end != ends.rend(); ++end) {]]
+              NEW [[for (auto end = ends.begin(); end != ends.end(); ++end) {]]
+              TESTS_OF unit_io
+              MUST_FAIL Computed.ParametersAreNumbersWithDimension)
+
+# A run whose text has the file's own values: made again, it is another one.
+livens_mutant(NAME set_values_not_kept
+              FILE io/scenario/scenario.cpp
+              OLD [[scenario.text = with_set_values(std::move(scenario.text), parameters);]]
+              NEW [[;]]
+              TESTS_OF unit_io
+              MUST_FAIL ParametersOfScenarios.ThatAreSetStandInTheTextThatIsKept)
+
+# Plain numbers that are set without the unit that the parameter has.
+livens_mutant(NAME set_without_unit
+              FILE io/scenario/text/set_values.cpp
+              OLD [[if (one.is_in_unit_of_file &&]]
+              NEW [[if (false && one.is_in_unit_of_file &&]]
+              TESTS_OF unit_io
+              MUST_FAIL ParametersOfScenarios.ThatAreSetStandInTheTextThatIsKept)
+
+# -1^2 for (-1)^2.
+livens_mutant(NAME index_without_parentheses
+              FILE io/scenario/schema/repeat.cpp
+              OLD [[return is_in_words || index_.value >= 0 ? digits : "(" + digits + ")";]]
+              NEW [[return digits;]]
+              TESTS_OF unit_io
+              MUST_FAIL Repeat.CountsFromAnyFirstIndexUnderAnyName)

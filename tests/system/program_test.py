@@ -149,6 +149,22 @@ class Solve(ProgramTest):
         self.assertGreaterEqual(result["residual_norm"], 0)
         self.assertEqual(result["errors"], [])
 
+    def test_parameters_are_set_and_kept(self):
+        """A run that was solved with --set can be made again from its file alone."""
+        text = text_with("end = 0.5", 'end = "T"', SMALL.replace("format = 1", 'format = 1\nparameters = { T = "500 ms" }', 1))
+        self.write("small.toml", text)
+        self.expect(0, "solve", "small.toml", "-o", "set.nc", "--set", "T=0.4", "-q")
+        self.expect(0, "solve", "small.toml", "-o", "also.nc", "--set", " T = 2*200 ms", "-q")
+        self.expect(0, "solve", "small.toml", "-o", "own.nc", "-q")
+        ends = {name: json.loads(self.expect(0, "info", name + ".nc", "--json").out) for name in ("set", "also", "own")}
+        self.assertEqual([ends[name]["end"] for name in ends], [0.4, 0.4, 0.5])
+        self.expect(0, "sample", "set.nc", "--body", "brick", "--at", "0.4", "--exact")
+        self.assertIn(b'T = "0.4 s"', (self.folder / "set.nc").read_bytes())
+        self.expect(SCENARIO, "check", "small.toml", "--set", "U=1")
+        self.expect(SCENARIO, "check", "small.toml", "--set", "T=2 kg")
+        self.assertIn("did you mean 'T'", self.expect(SCENARIO, "check", "small.toml", "--set", "t=1").err)
+        self.assertIn("NAME=VALUE", self.expect(USAGE, "check", "small.toml", "--set", "T").err)
+
     def test_default_name_is_the_stem_here(self):
         self.write("small.toml", SMALL)
         done = self.expect(0, "solve", "small.toml")

@@ -59,13 +59,18 @@ void Hunt::look_at(std::span<const double> t, std::span<const double> f)
     places.resize(most_places);
 }
 
+/// How close an instant is to be found between two others.
+double tolerance_between(double a, double b)
+{
+    return std::max(1e-7 * (b - a),
+                    4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(a), std::abs(b)));
+}
+
 /// Brent's minimisation of -f between two instants, from one between [Brent1973, chapter 5].
 template <class Function>
-Extreme highest(const Function& f, double a, double x, double fx, double b)
+Extreme highest(const Function& f, double a, double x, double fx, double b, double tolerance)
 {
-    constexpr double golden = 0.381966011250105, fine = 1e-7;
-    const double tolerance = std::max(fine * (b - a), 4 * std::numeric_limits<double>::epsilon() *
-                                                          std::max(std::abs(a), std::abs(b)));
+    constexpr double golden = 0.381966011250105;
     double w = x, fw = fx, v = x, fv = fx, step = 0, before = 0;
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (a + b);
@@ -111,17 +116,19 @@ public:
           numbers_(static_cast<std::size_t>(quantities.n_numbers()))
     {}
 
+    bool has_better() const { return static_cast<bool>(better_); }
     /// In the best state there is. Where it cannot be had, of the polynomials.
     double operator()(const QuantitySeries& series, double t)
     {
         Patience::ask();
-        std::optional<BetterSample> sample;
-        if (better_) sample = better_(t);
-        const std::span wanted(&series.quantity, 1);
-        if (sample)
-            quantities_.at(sample->state, Side::right, wanted, numbers_, sample->joints);
-        else
-            quantities_.at(sample_state(motion_, t), Side::right, wanted, numbers_);
+        const std::optional<BetterSample> sample = better_ ? better_(t) : std::nullopt;
+        if (!sample) return on_polynomials(series, t);
+        quantities_.at(sample->state, Side::right, {&series.quantity, 1}, numbers_, sample->joints);
+        return series.of(numbers_);
+    }
+    double on_polynomials(const QuantitySeries& series, double t)
+    {
+        quantities_.at(sample_state(motion_, t), Side::right, {&series.quantity, 1}, numbers_);
         return series.of(numbers_);
     }
 
@@ -138,35 +145,69 @@ struct Refined {
     double gap;   ///< between the polynomials and what is better, at the place itself
 };
 
+/// The highest value of f about a place, `there` at the place itself, or where the way from an end begins.
+template <class Function>
+Extreme highest_about(const Function& f, const Place& place, double there)
+{
+    const double tolerance = tolerance_between(place.from, place.until);
+    return highest(f, place.from, place.at, there, place.until, tolerance);
+}
+
+/// At an end, which is known best of all: the way from there leads up only if it begins so.
+template <class Function>
+Extreme highest_at_end(const Function& f, const Place& place)
+{
+    const Extreme end{place.value, place.at};
+    const double way = place.until - place.from, inwards = place.at == place.from ? 0.02 : -0.02;
+    Place near = place;
+    near.at += inwards * way;
+    const double beside = f(near.at);
+    if (!(beside > end.value)) return end;
+    const Extreme found = highest_about(f, near, beside);
+    return found.value > end.value + equal_values * std::abs(end.value) ? found : end;
+}
+
+bool is_at_end(const Place& place) { return place.at == place.from || place.at == place.until; }
+
+/// On the polynomials, which cost little: where the best states are to be asked for.
+void polish(Looker& look, const QuantitySeries& series, double sign, Place& place)
+{
+    const auto f = [&](double t) { return sign * look.on_polynomials(series, t); };
+    const Extreme found = is_at_end(place) ? highest_at_end(f, place) : highest_about(f, place, place.value);
+    place.value = found.value;
+    place.at = found.t;
+}
+
+/// In the best states, from what polynomials tell: their extremes stand close to it.
 Refined refine(Looker& look, const QuantitySeries& series, double sign, const Place& place)
 {
+    if (!look.has_better()) return {{place.value, place.at}, 0};
     const auto f = [&](double t) { return sign * look(series, t); };
-    const bool at_start = place.at == place.from, at_end = place.at == place.until;
-    if (!at_start && !at_end) {
-        const double there = f(place.at);
-        const Extreme found = highest(f, place.from, place.at, there, place.until);
-        return {found, std::abs(there - place.value)};
-    }
-    // An end is known best of all; the way from there leads up only if it begins so.
-    const Extreme end{place.value, place.at};
-    const double way = place.until - place.from, near = place.at + (at_start ? 0.02 : -0.02) * way;
-    const double beside = f(near);
-    if (!(beside > end.value)) return {end, 0};
-    const Extreme found = highest(f, place.from, near, beside, place.until);
-    return {found.value > end.value + equal_values * std::abs(end.value) ? found : end, 0};
+    if (is_at_end(place)) return {highest_at_end(f, place), 0};
+    const double there = f(place.at), reach = 0.05 * (place.until - place.from),
+                 tolerance = tolerance_between(place.from, place.until);
+    const double a = std::max(place.from, place.at - reach), b = std::min(place.until, place.at + reach);
+    Extreme found = highest(f, a, place.at, there, b, tolerance);
+    if (found.t - a < 4 * tolerance || b - found.t < 4 * tolerance) found = highest_about(f, place, there);
+    return {found, std::abs(there - place.value)};
 }
 
 Extreme extreme_of(Looker& look, const QuantitySeries& series, Hunt& hunt, bool is_constant)
 {
     if (hunt.places.empty()) return {no_value, no_value};
-    std::ranges::stable_sort(hunt.places, [](const Place& a, const Place& b) { return a.value > b.value; });
+    const auto by_value = [](const Place& a, const Place& b) { return a.value > b.value; };
+    std::ranges::stable_sort(hunt.places, by_value);
     if (is_constant) return {hunt.sign * hunt.places[0].value, hunt.places[0].at};
     if (hunt.places.size() > most_places) hunt.places.resize(most_places);
+    const double highest_sample = hunt.places[0].value;
+    std::erase_if(hunt.places, [&](const Place& one) { return one.value + one.rise < highest_sample; });
+    for (Place& place : hunt.places) polish(look, series, hunt.sign, place);
+    std::ranges::stable_sort(hunt.places, by_value);
     const Refined first = refine(look, series, hunt.sign, hunt.places[0]);
     Extreme best = first.extreme;
     double gap = first.gap;
     for (const Place& place : std::span(hunt.places).subspan(1)) {
-        if (place.value + place.rise + 2 * gap < best.value) break;
+        if (place.value + 2 * gap < best.value) break;
         const Refined refined = refine(look, series, hunt.sign, place);
         gap = std::max(gap, refined.gap);
         const Extreme& found = refined.extreme;

@@ -187,7 +187,8 @@ std::vector<test::Case> cases_of_driven_laws()
          with("[[drive]]\nname = \"d\"\ntype = \"joint\"\njoint = \"j\"\nexpression = \"abs(t - 0.5137) - "
               "0.5137\"\n[start]\ninitial = \"project\""),
          "\"d\""},
-        {"unit", with("[[drive]]\nname = \"d\"\ntype = \"joint\"\njoint = \"j\"\nrate = \"2*t\""), "\"2*t\""},
+        {"expression-name", with("[[drive]]\nname = \"d\"\ntype = \"joint\"\njoint = \"j\"\nrate = \"2*t\""),
+         "\"2*t\""},
     };
 }
 

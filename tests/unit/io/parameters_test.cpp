@@ -132,6 +132,12 @@ TEST(Computed, WhatHasNoValueSaysWhy)
     EXPECT_NE(fault("sin(t)", "").find("does not change with time"), std::string::npos);
     EXPECT_NE(fault("2*3*4 L", "m", "L = 1").find("'L' at column 7"), std::string::npos);
     EXPECT_NE(fault("(2*3", "m"), "");
+    for (const char* text :
+         {"2*j", "2/j", "2 *j", "2^j", "L", "-5*2 m", "(1)", "2 + 3 m", "1 m - 3 mm", "2 pi", "- 5 mm"})
+        EXPECT_TRUE(is_computed(text, no_parameters())) << text;
+    for (const char* text :
+         {"5 mm", "-5 mm", "+5 mm", "2", " 1.5e-3 kN/mm", "3 1/s", "2 m^2", "2 m^-1 s", "5 foo", "kg"})
+        EXPECT_EQ(is_computed(text, no_parameters()), text[0] == 'k') << text;
     Table table("length = 1");
     EXPECT_EQ(compute("2*lenght", table.parameters).help, "did you mean 'length'?");
     EXPECT_EQ(compute("kg*2", table.parameters).help, "a unit stands behind a number: 1 kg");

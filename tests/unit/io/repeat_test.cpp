@@ -120,7 +120,7 @@ count = 3
 name = "{k} and {k+d} and {2*(k+1)}"
 mass = "k^2 + 1"
 inertia = [1, 1, 1]
-position = ["3*k", "-{k}", 0]
+position = ["3*k", "-{k}", "k"]
 [time]
 end = 1
 )";
@@ -132,6 +132,7 @@ end = 1
     EXPECT_EQ(bodies[0].mass(0, 0), 2) << "(-1)^2, not -(1^2)";
     EXPECT_EQ(bodies[0].X(1, 0), 1);
     EXPECT_EQ(bodies[2].X(0, 0), 3);
+    EXPECT_EQ(bodies[2].X(2, 0), 1) << "the index alone";
 }
 
 TEST(Repeat, TellsPlaceAndIndexOfWhatIsWrong)
@@ -174,6 +175,7 @@ TEST(Repeat, HasAHeadOfItsOwn)
     for (const char* name : {"m", "sin", "t", "n", "1i", "a b"})
         expect_error(replaced(chain, "count = \"n\"", "count = 2\nindex = \"" + std::string(name) + "\""),
                      "repeat-index", "\"" + std::string(name) + "\"\n[[repeat.body");
+    EXPECT_EQ(read(replaced(chain, "n = 3", "n = true")).diagnostics.size(), 1u) << "told once";
     // Neither memory nor time is spent on what is too large.
     const std::string long_text(100000, 'x');
     expect_error("format = 1\n[time]\nend = 1\n[[repeat]]\ncount = 10000\nbody = [{ name = \"" + long_text +

@@ -583,27 +583,5 @@ TEST(Scenario, SuggestionsNameTheNearestBody)
     EXPECT_EQ(find(result, "body-unknown")->help, "did you mean 'lower'?");
 }
 
-TEST(Scenario, SyntaxErrorsPointAtTheCause)
-{
-    for (const auto& [line, code, column] :
-         {std::tuple("mass = 5 kg", "toml-syntax", 10), std::tuple("mass = 1,5", "toml-syntax", 9),
-          std::tuple("mass = 010", "toml-syntax", 11), std::tuple("mass = upper", "toml-syntax", 8),
-          std::tuple("mass = 1e400", "number-overflow", 8),
-          std::tuple("mass = 99999999999999999999", "number-overflow", 8),
-          std::tuple("{ a = 1 }", "toml-syntax", 1),
-          std::tuple("x = { a = 1, a = 2 }", "duplicate-key", 14)}) {
-        const ScenarioResult result = read("format = 1\n" + std::string(line) + "\n");
-        ASSERT_EQ(result.diagnostics.size(), 1u) << line;
-        EXPECT_EQ(result.diagnostics[0].code, code) << shown(result);
-        EXPECT_EQ(result.diagnostics[0].line, 2) << shown(result);
-        EXPECT_EQ(result.diagnostics[0].column, column) << shown(result);
-    }
-    const ScenarioResult unit = read("mass = 5 kg\n");
-    EXPECT_NE(unit.diagnostics[0].help.find("quotes"), std::string::npos);
-    const ScenarioResult brackets = read("format = 1\n[body]\nname = \"a\"\n");
-    ASSERT_NE(find(brackets, "wrong-type"), nullptr);
-    EXPECT_NE(find(brackets, "wrong-type")->help.find("[[body]]"), std::string::npos);
-}
-
 }   // namespace
 }   // namespace livens

@@ -437,6 +437,21 @@ TEST(Schema, ReferencePageIsTheOneInDocs)
     EXPECT_EQ(file_text("docs/scenario.md"), schema_markdown()) << "livens schema --md > docs/scenario.md";
 }
 
+TEST(Schema, EveryTypeHasItsOwnTableAndALinkOnThePage)
+{
+    const std::string page = schema_markdown();
+    for (const std::string& type : schema_types()) {
+        const std::size_t point = type.find('.');
+        EXPECT_NE(schema_markdown(type).find("| `name` |"), std::string::npos) << type;
+        EXPECT_NE(page.find("](" + type.substr(0, point) + "s/" + type.substr(point + 1) + ".md)"),
+                  std::string::npos)
+            << type;
+    }
+    EXPECT_NE(schema_markdown("joint.screw").find("| `pitch` |"), std::string::npos);
+    EXPECT_EQ(schema_markdown("joint.weld").find("| `pitch` |"), std::string::npos);
+    EXPECT_EQ(schema_markdown("joint.hinge"), "");
+}
+
 TEST(Schema, JsonNamesEveryKeyAndClosesEveryBracket)
 {
     const std::string json = schema_json();

@@ -16,6 +16,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -61,11 +62,12 @@ fs::path new_folder()
     return name;
 }
 
-/// Ends that processes do not inherit.
+/// Ends that processes do not inherit: of a socket, since writing to a pipe whose reader has gone is a
+/// signal.
 std::array<int, 2> new_pipe()
 {
     std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+    if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()) != 0)
         throw IoError("no pipe can be made: " + std::string(std::strerror(errno)), fault);
     // Numbers that the browser's own two do not overwrite.
     for (int& end : ends) {
@@ -232,23 +234,26 @@ Browser::~Browser()
     fs::remove_all(folder_, error);
 }
 
-/// With its own last words, where it has ended.
 void Browser::refuse(const std::string& why) const
+{
+    throw IoError("the browser that draws pictures failed: " + why, fault);
+}
+
+void Browser::refuse_ended() const
 {
     std::ifstream told(folder_ / "told");
     std::string line, last;
     while (std::getline(told, line))
         if (!line.empty()) last = line;
-    throw IoError("the browser that draws pictures failed: " + why + (last.empty() ? "" : " (" + last + ")"),
-                  fault);
+    refuse("it has ended" + (last.empty() ? "" : " (" + last + ")"));
 }
 
 void Browser::send(std::string_view message)
 {
     while (!message.empty()) {
-        const ssize_t n = ::write(to_, message.data(), message.size());
+        const ssize_t n = ::send(to_, message.data(), message.size(), MSG_NOSIGNAL);
         if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) refuse("it has ended");
+        if (n <= 0) refuse_ended();
         message.remove_prefix(static_cast<std::size_t>(n));
     }
 }
@@ -269,7 +274,7 @@ std::string Browser::receive()
         if (n_ready <= 0) continue;
         std::array<char, 1 << 16> buffer{};
         const ssize_t n = ::read(from_, buffer.data(), buffer.size());
-        if (n == 0) refuse("it has ended");
+        if (n == 0) refuse_ended();
         if (n > 0) unread_.append(buffer.data(), static_cast<std::size_t>(n));
     }
 }

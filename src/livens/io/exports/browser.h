@@ -32,6 +32,7 @@ private:
     void send(std::string_view message);
     std::string receive();
     [[noreturn]] void refuse(const std::string& why) const;
+    [[noreturn]] void refuse_ended() const;   // with its last words
 
     std::filesystem::path folder_;
     pid_t process_ = -1;

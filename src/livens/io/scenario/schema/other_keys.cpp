@@ -96,6 +96,8 @@ constexpr OtherKey other_keys[] = {
     {top, "", "initial initialconditions ic state initialstate", "start",
      "bodies state where they start and how fast ('position', 'velocity', ..); joints by "
      "[[start.coordinates]]"},
+    {top, "", "array arrays loop for foreach pattern copies repeats replicate", "repeat",
+     "tables that stand many times: [[repeat]] with count = 10 and [[repeat.body]], [[repeat.joint]], .."},
     {top, "", "constants variables vars params param define defines let", "parameters",
      "constants stand in [parameters]"},
     // bodies

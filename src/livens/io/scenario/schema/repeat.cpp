@@ -144,7 +144,10 @@ private:
             --at;
         }
         copy_until(from.size());
-        return to;
+        // "i" alone: a number in quotes would be one that lacks its unit.
+        const bool is_index =
+            role == Role::number && to != from && to.find_first_not_of("0123456789 \t") == std::string::npos;
+        return is_index ? "(" + to + ")" : to;
     }
 
     Index index_;
@@ -245,8 +248,11 @@ std::optional<Node> without_repeats(const Node& root, const Parameters& paramete
     const Table head{"top of the file", "", {*key}};
     const Section section(only, head, "the scenario", findings, parameters);
     Size size;
+    bool are_valid = true;
     for (const Section& repeat : section.sections("repeat")) {
-        if (!repeat.is_valid() || !check_index(repeat, parameters)) continue;
+        // A count that needs a parameter which is wrong is not valid, though nothing is said of it.
+        are_valid = repeat.is_valid() && check_index(repeat, parameters) && are_valid;
+        if (!are_valid) continue;
         Size one;
         for (const Value& value : repeat.values()) one.add(*value.node);
         size.values += one.values * repeat.number("count");
@@ -256,7 +262,7 @@ std::optional<Node> without_repeats(const Node& root, const Parameters& paramete
                          "the copies have more than " + std::to_string(max_scenario_values) + " values or " +
                              std::to_string(max_scenario_bytes) + " bytes");
     }
-    if (findings.n_errors() > errors_before) return std::nullopt;
+    if (!are_valid || findings.n_errors() > errors_before) return std::nullopt;
     for (const Section& repeat : section.sections("repeat")) repeat_tables(repeat, all, findings);
     return findings.n_errors() > errors_before ? std::nullopt : std::optional(std::move(all));
 }

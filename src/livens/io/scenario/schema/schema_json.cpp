@@ -95,17 +95,13 @@ void write_list(JsonWriter& json, const Key& key, const std::vector<Form>& lists
     if (count > 0) json.member("maxItems", count);
 }
 
-/// Of a number that is a text: a quantity with its unit, or an expression. Names, units and dimensions are
-/// for the reader to check; what no expression can be is refused: "3 kg 5", "kg 3", "0.5" alone.
+/// Of a number that is a string: a quantity with its unit, or an expression. Names, units and dimensions are
+/// for the reader; refused is what has neither letter nor operator, "3", and signs that no expression has.
+/// Validators print the pattern, so that it is short.
 void write_pattern(JsonWriter& json)
 {
-    const std::string number = R"((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)",
-                      word = R"((?:[A-Za-z_]|[^ -~\t])(?:[A-Za-z0-9_]|[^ -~\t])*)",
-                      words = word + R"((?:[ \t]+)" + word + ")*", before = R"([-+({ \t]*)",
-                      operand = "(?:" + number + R"((?:[ \t]*)" + words + ")?|" + words + ")",
-                      more = R"((?:[ \t)}]*[-+*/^,({])" + before + operand + ")";
-    json.member("pattern", "^" + before + "(?:" + number + R"([ \t]*)" + words + more + "*|" + words + more +
-                               "*|" + number + more + R"(+)[ \t)}]*$)");
+    const std::string rest = "[^!?:;=<>&|%$#@~]*";
+    json.member("pattern", "^" + rest + "([A-Za-z_)*/^\xc2\xb0]|[0-9] *[-+] *[0-9])" + rest + "$");
 }
 
 /// The keywords of one form, beside its type.

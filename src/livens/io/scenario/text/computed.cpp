@@ -225,6 +225,8 @@ bool is_computed(std::string_view given, const Parameters& parameters)
     double number = 0;
     const char* const end = std::from_chars(rest.data(), rest.data() + rest.size(), number).ptr;
     rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+    const std::size_t next = std::min(rest.find_first_not_of(" \t"), rest.size());
+    if (next < rest.size() && (rest[next] == '*' || rest[next] == '/' || rest[next] == '^')) return true;
     // A number with a unit has no other numbers but exponents, and no names but those of units.
     for (std::size_t at = 0; at < rest.size(); ++at) {
         const char before = at > 0 ? rest[at - 1] : ' ';
