@@ -27,6 +27,7 @@ from ._export import Comparison, compare
 from ._generated import *   # noqa: F403  the shapes and methods that the schema has, see __all__ there
 from ._generated import Body, Drive, Joint, Load, MethodOptions, Sensor
 from ._functions import BodyState
+from ._import import from_urdf
 from ._load import load
 from ._model import Model
 from ._parameters import Parameters
@@ -45,7 +46,7 @@ __all__ = [
     "MethodOptions", "ModeBody", "ModeJoint", "Model", "ModelWarning", "Modes", "Names", "Parameters", "Parts", "Peak", "Place", "PointSeries",
     "ReadingSeries", "RestBody", "RestJoint", "ResultFileError", "Section", "Sensor", "SensorSeries", "Series",
     "Shape", "SlowWarning", "Solution", "SolveError", "SolveWarning", "StateMatrices", "__version__", "compare",
-    "explain", "load", "load_solution", "momenta", "positions", "solve", "solve_many", "state", "table", "visual",
+    "explain", "from_urdf", "load", "load_solution", "momenta", "positions", "solve", "solve_many", "state", "table", "visual",
 ]
 __all__ += _generated.__all__
 
