@@ -27,7 +27,7 @@ class LoadTape;
 struct TapeNumber;
 }   // namespace multibody_internal
 
-/// One value for each body of a load; two are held in place.
+/// One value per body of a load; up to two are stored in place.
 template <class T>
 class PerBody {
 public:
@@ -52,14 +52,14 @@ private:
     std::vector<T> many_;
 };
 
-/// What a load may look at: the instant, and X and dX/dt of its bodies (the world's where there is none).
+/// Arguments of a load: time, and X and dX/dt of its bodies (those of the world if there is none).
 struct LoadArguments {
     explicit LoadArguments(std::size_t n_bodies = 2) : X(n_bodies, world_configuration), V(n_bodies) {}
 
     Instant at;
     PerBody<Matrix34> X;
     PerBody<Matrix34> V;
-    /// About what each of Load::angles is, within half a turn. Empty: turns are not known.
+    /// Approximate values of Load::angles, to within half a turn. Empty: full turns are not known.
     std::span<const double> angles{};
 };
 
@@ -80,58 +80,58 @@ struct LoadTangent {
     std::array<PerBody<Matrix<12, 12>>, 2> V;
 };
 
-/// A number that a load reports of itself.
+/// A quantity that a load can report.
 struct LoadReading {
     std::string name;   ///< "force", "length"
     std::string unit;   ///< "N"
     std::function<double(const LoadArguments&)> value;
 };
 
-/// F = sum_k f_k(t, numbers) times unit k, for who looks at f between the points where F is evaluated
+/// F = sum_k f_k(t, numbers) times unit k, to inspect f between the points at which F is evaluated
 /// (docs/theory.md, "Looks at laws").
 struct LawInside {
     std::size_t n_numbers = 0, n_factors = 0;
-    /// What f looks at.
+    /// Arguments of f.
     std::function<void(const LoadArguments&, std::span<double> numbers)> numbers;
     std::function<void(Instant at, std::span<const double> numbers, std::span<double> factors)> factors;
     /// Adds a unit.
     std::function<void(const LoadArguments&, std::size_t k, LoadForces&)> unit;
-    /// Bounds of |df_k/ds| on a piece of a way s; empty: nobody knows.
+    /// Bounds of |df_k/ds| on an interval of a path s; empty: not known.
     std::function<void(const EnclosedValue& t, std::span<const EnclosedValue> numbers,
                        std::span<double> bounds)>
         steepest = nullptr;
-    /// Smooth but where Load::centre comes near zero.
+    /// Smooth except near zeros of Load::centre.
     bool only_at_centre = false;
 };
 
-/// Where the force of a load is not smooth, and what is to be looked at inside of elements.
+/// Where the force of a load is not smooth, and what has to be inspected inside elements.
 struct LoadSmoothness {
-    std::vector<double> breaks;   ///< instants where F jumps or bends; they become element ends
-    /// What decides on which of its smooth pieces F is, a number for each guard; none: it has but one, breaks
-    /// apart.
+    std::vector<double> breaks;   ///< times at which F has a jump or kink; they become element ends
+    /// Switching functions whose signs select the smooth branch of F; none: F has one branch, apart from
+    /// breaks.
     std::vector<Guard> guards{};
     std::function<void(const LoadArguments&, std::span<double>)> guarded{};
-    /// F is as smooth as the motion, but at its guards: nobody needs to look at it inside of elements.
+    /// F is as smooth as the motion, except at its guards, and need not be inspected inside elements.
     bool is_smooth = false;
-    /// Else, what to look at; none: F itself.
+    /// Otherwise, what to inspect; none: F itself.
     std::optional<LawInside> inside{};
-    /// A vector at whose zero F is not smooth: the velocity of what drags, the line of a spring.
+    /// A vector at whose zeros F is not smooth: the velocity for drag, the line of a spring.
     std::function<Vector3(const LoadArguments&)> centre{};
-    bool bends_at_centre = false;   ///< F is not smooth along ways that lead straight through it either
+    bool bends_at_centre = false;   ///< F is not smooth even along paths that pass straight through it
 };
 
-/// What a load does to the energy of a mechanism.
+/// Energy and power of a load.
 struct LoadEnergy {
     /// Potential energy in J of the conservative part; empty if the load has none.
     std::function<double(const LoadArguments&)> potential;
     /// Power in W of the part without potential. If empty: tr(F^T V) for a load without potential, else 0.
     std::function<double(const LoadArguments&)> power;
-    /// The same number on a tape; empty where `power` is not: it is called at each instant.
+    /// `power` recorded on a tape; if this is empty and `power` is not, `power` is called at each time.
     std::function<TapeNumber(LoadTape&)> recorded_power = nullptr;
 };
 
-/// F of a load, added to forces that arrive as zero. Any function will do; one that replaces it forgets what
-/// was recorded.
+/// F of a load, added to forces that are zero on entry. Any function is possible; assigning another one
+/// removes the recording.
 struct LoadFunction {
     LoadFunction() = default;
     LoadFunction(std::nullptr_t) {}   // NOLINT
@@ -143,13 +143,13 @@ struct LoadFunction {
     explicit operator bool() const { return static_cast<bool>(evaluate); }
 
     std::function<void(const LoadArguments&, LoadForces&)> evaluate;
-    /// The same times a number, as operations that are run at many instants side by side
-    /// (multibody/loads/load_tape.h). Empty: `evaluate` is called at each.
+    /// The same times a factor, recorded as operations that run at many times side by side
+    /// (multibody/loads/load_tape.h). Empty: `evaluate` is called at each time.
     std::function<void(LoadTape&, const TapeNumber& factor)> record = nullptr;
 };
 
-/// Of a force F_b = f u_b, at an instant: u of the bodies that it acts on, and the slopes of f by X and X' of
-/// all bodies of the load.
+/// For a force F_b = f u_b at one time: u of the bodies that it acts on, and the derivatives of f by X and X'
+/// of all bodies of the load.
 struct ProductSlopes {
     explicit ProductSlopes(std::size_t n_bodies) : by_X(n_bodies), by_V(n_bodies) {}
 
@@ -157,31 +157,31 @@ struct ProductSlopes {
     PerBody<Matrix34> by_X, by_V;
 };
 
-/// A load is data and functions; a new one is a new maker.
+/// A load: data and functions. A new type of load is a new function that makes one.
 struct Load : LoadSmoothness, LoadEnergy {
     std::string name;
     std::string type;
-    /// Two that it acts on, the second the world for a load on one body; then those that it only looks at.
+    /// The two bodies that it acts on (the second may be the world), then those that it only reads.
     std::vector<int> bodies{world, world};
     bool depends_on_X = false;   ///< dF/dX may differ from zero
     bool depends_on_V = false;   ///< dF/dV may differ from zero
     std::array<bool, 2>
-        needs_directors{};   ///< F is not zero outside the first column: refused on a point mass
-    /// What it pulls towards tells the length of a model that has no other: the radius of an orbit.
+        needs_directors{};   ///< F has parts outside the first column, which is an error on a point mass
+    /// Its distance to an attracting point defines the length of a model without any other length.
     bool sets_length_scale = false;
-    std::string domain;   ///< where F is a number, for the message if it is not; empty: everywhere
-    /// Angles that F counts with their turns, zero where the bodies are stated; see LoadArguments::angles.
+    std::string domain;   ///< domain of F, for error messages; empty: everywhere
+    /// Angles that F uses with full turns, zero in the configuration of the model; see LoadArguments::angles.
     std::vector<JointCoordinate> angles{};
 
     LoadFunction forces;   ///< F; required
-    /// dF/dX and dF/dV; required if one of the flags is set. The tangent arrives as zero.
+    /// dF/dX and dF/dV; required if one of the flags is set. The tangent is zero on entry.
     std::function<void(const LoadArguments&, LoadTangent&)> tangent;
-    /// The same of a force along coordinates, F = sum f_k u_k, but for what turning of u_k adds; empty: it is
-    /// none.
+    /// The same for a force along coordinates, F = sum f_k u_k, without derivatives of u_k; empty: not such
+    /// a force.
     std::function<std::vector<ProductSlopes>(const LoadArguments&)> products = nullptr;
-    /// For sensors and people.
+    /// Readings for sensors and output.
     std::vector<LoadReading> readings;
-    /// For people: where it acts on its two bodies, in their coordinates; empty: not along a line.
+    /// For drawing: points of application on its two bodies, in body coordinates; empty: not along a line.
     std::vector<Vector3> points{};
 };
 
@@ -189,11 +189,11 @@ enum class Frame { inertial, body_fixed };
 /// In scenarios, in this order.
 constexpr std::array<std::string_view, 2> words_of(Frame) { return {"world", "body"}; }
 
-/// Three functions of time, the components of a load.
+/// Components of a load as functions of time.
 using TimeVector = std::array<TimeFunction, 3>;
 TimeVector window(const TimeVector& value, double from, double until);
 
-/// Force (N) at a material point of a body, in world axes or turning with the body:
+/// Force (N) at a material point of a body, in world axes or rotating with the body:
 /// F = f (1, theta)^T with f or f = sum_i f_i d_i.
 Load point_force(const std::string& name, int body, const Vector3& point, const TimeVector& value,
                  Frame frame);
@@ -201,13 +201,13 @@ Load point_force(const std::string& name, int body, const Vector3& point, const 
 /// Torque (N m) on a body, F_i = 1/2 mu x d^i with contravariant directors  (P21); the metric is inverted.
 Load torque(const std::string& name, int body, const TimeVector& value, Frame frame);
 
-/// What a spring does at an elongation e: its force, and the slope and the integral of that.
+/// Force of a spring at an elongation e, with its derivative and integral.
 struct SpringValue {
-    double force = 0;       ///< N, or N m for e in rad; positive where it pulls back
-    double stiffness = 0;   ///< by m or rad
+    double force = 0;       ///< N, or N m for e in rad; positive if it pulls back
+    double stiffness = 0;   ///< per m or rad
     double energy = 0;      ///< J, 0 for e = 0
 };
-/// Forces of springs that are not linear; continuous, but stiffness or its slopes may jump at `bends`.
+/// Nonlinear spring law; continuous, but stiffness or its derivatives may jump at `bends`.
 struct SpringLaw {
     std::function<SpringValue(double e)> at = nullptr;
     std::vector<double> bends{};   ///< ascending
@@ -218,10 +218,10 @@ struct SpringLaw {
 
 /// stiffness e + cubic e^3. Throws InputError (`load-negative`).
 SpringLaw progressive_spring(double stiffness, double cubic);
-/// Where straight lines through these points meet at an angle.
+/// Points at which a piecewise linear curve through these points has a kink.
 std::vector<double> bends_of_lines(const std::vector<double>& x, const std::vector<double>& y);
-/// Through forces at ascending elongations: straight lines, or a cubic spline; straight on outside. Throws
-/// InputError as linear_table() does.
+/// Interpolates forces at ascending elongations: piecewise linear, or a cubic spline; linear outside. Throws
+/// InputError like linear_table().
 SpringLaw tabulated_spring(const std::vector<double>& elongations, const std::vector<double>& forces,
                            bool is_spline);
 
@@ -229,46 +229,46 @@ struct SpringDamper {
     double stiffness = 0;     ///< N/m
     double damping = 0;       ///< N s/m
     double free_length = 0;   ///< m
-    double preload = 0;       ///< N, pulls wherever the ends are
+    double preload = 0;       ///< N, constant tension
     SpringLaw law{};          ///< instead of `stiffness`, of length - free_length
 };
 
 /// Spring and damper between a point of one body and a point of another or of the world; the force acts along
-/// the line between the points. Throws InputError for negative stiffness, damping or free length. Points that
-/// coincide: the force is zero for a linear spring of free_length 0 and along no direction (zero) otherwise.
+/// the line between the points. Throws InputError for negative stiffness, damping or free length. If the
+/// points coincide, the force has no direction and is set to zero.
 Load spring_damper(const std::string& name, int first, const Vector3& point_first, int second,
                    const Vector3& point_second, const SpringDamper& spring);
 
 struct JointSpring {
     double stiffness = 0;   ///< N/m or N m/rad
     double damping = 0;     ///< N s/m or N m s/rad
-    double rest = 0;        ///< m or rad: the coordinate without force but the preload
-    double preload = 0;     ///< N or N m, against the coordinate, wherever it is
+    double rest = 0;        ///< m or rad: unloaded coordinate, apart from the preload
+    double preload = 0;     ///< N or N m, constant, against the coordinate
     SpringLaw law{};        ///< instead of `stiffness`, of q - rest
 };
 
-// Loads along a coordinate of a joint: a force that does the work Q dq, between its two bodies. X is the
-// configuration of all bodies at the start.
+// Loads along a joint coordinate: a force that does the work Q dq, between the two bodies of the joint. X is
+// the initial configuration of all bodies.
 
-/// Q = -stiffness (q - rest) - damping dq/dt - preload. Turns of an angle are counted where the caller knows
-/// them (LoadArguments::angles); else it is known up to 3.05 rad from where it is in X, and beyond that the
-/// load is not a number.
+/// Q = -stiffness (q - rest) - damping dq/dt - preload. Full turns of an angle are counted if the caller
+/// supplies them (LoadArguments::angles). Otherwise the angle is known up to 3.05 rad from its value in X;
+/// beyond, the load is not a number.
 Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, const JointSpring& spring,
                   const Configurations& X);
 /// Q = value(t), N or N m.
 Load actuator(const std::string& name, const NamedCoordinate& coordinate, const TimeFunction& value,
               const Configurations& X);
 
-/// What is told of a load whose force is not finite.
+/// Error message for a load whose force is not finite.
 std::string not_finite(const Load& load);
 
-/// What a load is asked with, from X and V of all bodies.
+/// Arguments of a load, from X and V of all bodies.
 LoadArguments load_arguments(const Load& load, Instant at, std::span<const Matrix34> X,
                              std::span<const Matrix34> V, std::span<const double> angles = {});
 
 /// tr(F^T V) over both bodies.
 double load_power(const Load& load, const LoadArguments& arguments);
-/// What changes the mechanism's energy: `power` by the rule stated there.
+/// Power that changes the energy of the mechanism, see LoadEnergy::power.
 double power_without_potential(const Load& load, const LoadArguments& arguments);
 
 }   // namespace gnu::visibility("default")]]livens

@@ -16,24 +16,24 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
-/// Positions and their rates of all bodies at one instant.
+/// Configurations X and their rates V = dX/dt of all bodies at one time.
 struct State {
     double t = 0;
     std::vector<Matrix34> X;
     std::vector<Matrix34> V;
-    std::vector<double> angles{};   ///< of loads, see Turns; empty: no turns since the bodies were stated
+    std::vector<double> angles{};   ///< of loads, with full turns; empty: no full turns
 };
 
-/// A mechanism is built by the add_ functions and constant from then on; all others take it const. Functions
-/// in it (laws of loads, drives, rows) depend on their arguments alone: what was found with them is kept.
+/// A mechanism. Build it with the add_ functions; afterwards it is constant. Functions in it (laws of loads,
+/// drives, rows) must depend on their arguments alone, since their results are cached.
 class Model {
 public:
     explicit Model(const Vector3& gravity = {0, 0, 0});
 
-    /// Each returns the index of what was added. They throw InputError: a name given twice, empty or "world";
-    /// an index of a body that does not exist; a body that no MassProperties describe; a joint without rows
-    /// or with rows that break the rules of ConstraintRow, or with drives that jump or kink; a load without
-    /// forces; what needs directors on a point mass; numbers that are not finite.
+    /// Each returns the index of the added part. Throw InputError for: a name that is empty, "world" or a
+    /// duplicate; an invalid body index; a body with impossible mass properties; a joint without rows, with
+    /// rows that violate the rules of ConstraintRow, or with drives that jump or have kinks; a load without
+    /// forces; a part that needs directors on a point mass; numbers that are not finite.
     int add_body(Body body);
     int add_joint(Joint joint);
     int add_load(Load load);
@@ -63,27 +63,27 @@ public:
     int find_joint(const std::string& name) const;
     std::string body_name(int body) const { return body == world ? "world" : bodies_[body].name; }
 
-    /// X and V of all bodies as they were given.
+    /// X and V of all bodies in the configuration of the model.
     State start() const;
-    /// Whether rows depend on time.
+    /// Whether any constraint depends on time.
     bool has_drives() const { return has_drives_; }
-    /// Whether the law of a load or row bends or jumps where the motion decides; see Load::guards.
+    /// Whether a load or row has kinks or jumps that depend on the motion; see Load::guards.
     bool has_pieces() const { return has_pieces_; }
-    /// Whether joints act for a part of the time; these are what solve() divides it by, see acting_at().
+    /// Whether joints act for part of the time only; solve() divides the motion there, see acting_at().
     bool has_events() const { return has_events_; }
-    /// When joints begin or end to act, ascending, without repetition.
+    /// Times at which joints engage or are released, ascending, without duplicates.
     std::vector<double> events() const;
-    /// All instants where a load jumps or bends, a drive bends, or a joint begins or ends to act, ascending,
-    /// without repetition.
+    /// Times at which a load has a jump or kink, a drive has a kink, or a joint engages or is released;
+    /// ascending, without duplicates.
     std::vector<double> load_breaks() const;
-    /// A length typical of the model (m), at the start: the largest of the bodies' radii of gyration, twice
-    /// the distances of their centres of mass from the mean of these, the arms from centres of mass to joint
-    /// points, the lengths between the two points of a joint; if there are no distances, those from what
-    /// attracts. Always positive: 1 if there is nothing to measure but rounding. Tolerances are relative to
-    /// it. Moving and turning the model changes it by rounding only.
+    /// The model length (m), to which tolerances and errors are relative: in the configuration of the model,
+    /// the largest of the radii of gyration, twice the distances of centres of mass from their mean, the
+    /// distances between centres of mass and joint points, and those between the two points of a joint. If
+    /// all distances are zero: the distance to an attracting point, or else 1. Always positive. Rigid motions
+    /// of the model change it by rounding errors only.
     double length() const;
-    /// The same for copies, and another after each change, so that what was found of a model is known to be
-    /// of it.
+    /// Equal for copies, and different after each change, so that cached results can be matched to their
+    /// model.
     std::uint64_t version() const { return version_; }
 
 private:
@@ -91,7 +91,7 @@ private:
         int joint;
         int row;
     };
-    /// length(), 0 where nobody has asked: threads that do so at once find the same.
+    /// Cache of length(), 0 before the first call; concurrent calls compute the same value.
     struct Length {
         Length() = default;
         Length(const Length& other) : value(other.value.load(std::memory_order_relaxed)) {}
@@ -119,10 +119,10 @@ private:
     friend Model frozen(const Model& model, Instant at);
 };
 
-/// The model with all rows as they are at an instant, without drives: for what is asked of positions alone.
+/// The model with all constraints frozen at a time, without drives, for questions on positions alone.
 Model frozen(const Model& model, Instant at);
 
-/// A model with the joints alone that act at an instant, and where they and their rows are in the whole one.
+/// A model with only the joints that act at a time; indices of these and their rows in the full model.
 struct ActingModel {
     Model model;
     std::vector<int> joints, rows;

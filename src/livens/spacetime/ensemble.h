@@ -10,8 +10,8 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
-/// What solve() takes. The model may be shared; what it calls (loads, drives), and options.progress, is
-/// called from several threads at once then.
+/// Arguments of one solve(). Models may be shared; their functions (loads, drives) and options.progress are
+/// then called from several threads at once.
 struct Variation {
     const Model* model = nullptr;
     Problem problem;
@@ -20,18 +20,18 @@ struct Variation {
     SolveOptions options{};
 };
 
-/// solve() of each, in its order. No bit of them depends on `n_threads`, nor on what else is solved; 0: as
-/// many as the machine has processors. What the first of them throws, by its place, is thrown when those that
-/// had begun have ended.
+/// Solves each variation; results are in the same order. Their bits depend neither on `n_threads` nor on the
+/// other variations; 0: one thread per processor. If any throw, the exception of the first in order is
+/// rethrown when those in progress have ended.
 std::vector<Solution> solve_all(std::span<const Variation> variations, int n_threads = 0);
 
-/// work(i) for all i < n on that many threads, each begun in its turn, and done(i) on the calling thread, in
-/// order, each as soon as work(i) has ended. With one thread the calling one does everything, in turns. What
-/// work(i) throws is thrown in place of done(i); then nothing more is begun.
+/// Calls work(i) for all i < n on so many threads, started in order, and done(i) on the calling thread, in
+/// order, as soon as work(i) has ended. With one thread, the calling thread alternates between both. An
+/// exception of work(i) is rethrown instead of done(i); no further work is then started.
 void run_in_order(int n, int n_threads, const std::function<void(int)>& work,
                   const std::function<void(int)>& done);
 
-/// n_threads, or what 0 stands for.
+/// n_threads, or the number of processors for 0.
 int threads_for(int n_threads);
 
 }   // namespace livens

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sets of instructions that kernels are compiled for. Equal sets give equal bits.
+// Instruction sets for which kernels are compiled. The same set gives the same bits.
 #pragma once
 
 #include <optional>
@@ -7,20 +7,20 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
-/// In the order of their width: two doubles in a register, which every processor has, four with products and
-/// sums in one, eight.
+/// In order of vector width: two doubles (available on every processor), four with fused multiply-add,
+/// eight.
 enum class Instructions { sse2, avx2, avx512 };
 
 std::string_view to_string(Instructions set);
-/// By its word; empty if there is none of that name.
+/// The set with this name; empty if there is none.
 std::optional<Instructions> instructions_named(std::string_view word);
-/// Whether this processor has them and the library was built with them.
+/// Whether the processor supports the set and the library was built with it.
 bool has(Instructions set);
 
-/// What kernels are made for from now on: at first what the environment variable LIVENS_SIMD names, if that
-/// is there, else AVX2 where the processor has it, else SSE2.
+/// The set in use: initially the one named by the environment variable LIVENS_SIMD, if available, else AVX2
+/// if the processor has it, else SSE2.
 Instructions instructions();
-/// False: they are not there, and nothing changes.
+/// Selects a set. Returns false, without effect, if it is not available.
 bool use_instructions(Instructions set);
 
 }   // namespace livens

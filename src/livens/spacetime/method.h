@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The methods and their options.
+// Integration methods and their options.
 #pragma once
 
 #include <array>
@@ -17,27 +17,27 @@ namespace [[gnu::visibility("default")]] livens {
 /// Continuous X of degree p per element, nodes and quadrature at Gauss-Lobatto points; order 2p at element
 /// ends.
 struct Lobatto {
-    int degree = 4;   ///< 1..16; 0: as an accuracy has it, see Span
-    /// Elements solved together, 0: all. The equations are the same; conditions at both ends take all.
+    int degree = 4;   ///< 1..16; 0: chosen for an accuracy, see Span
+    /// Number of elements solved together, 0: all; with conditions at both ends always all.
     int window = 1;
 };
 
-/// The stiffly accurate sibling: nodes at the start and at the right Radau points, where loads are taken and
-/// constraints and equations of motion hold; order 2p - 1 at element ends. It damps what it does not resolve,
-/// and takes the state at the start only.
+/// The stiffly accurate counterpart: nodes at the start and at the right Radau points, where loads are
+/// evaluated and constraints and equations of motion hold; order 2p - 1 at element ends. It damps vibrations
+/// that are not resolved, and needs a given initial state.
 struct Radau {
     int degree = 4;   ///< 1..8
 };
 
-/// The elements of the paper: X, P and multipliers are separate fields over one time basis, directors are
-/// free and rigidity holds weakly (P10, P11, P23). Order 2 to degree + 1 at the ends of blocks, see
+/// The elements of Hesch, Glas and Schuss: X, P and multipliers are independent fields over one time basis,
+/// directors are free and rigidity holds weakly (P10, P11, P23). Order 2 to degree + 1 at block ends, see
 /// docs/theory.md.
 struct Mixed {
-    /// What each of them is stands in mixed/bases.cpp, in this order.
+    /// Defined in mixed/bases.cpp, in this order.
     enum class Basis { lagrange, bspline, nurbs };
-    /// How the momentum at the ends enters.
+    /// How the momentum enters at the ends.
     enum class Start {
-        natural,   ///< as the boundary term of Hamilton's law (P10); momenta balance to rounding
+        natural,   ///< as boundary term of Hamilton's law (P10); momenta balance to rounding
         strong     ///< as a value of the field P (P11, P13, P15)
     };
     /// Test and trial functions of the multipliers (Remark 3.1).
@@ -45,19 +45,19 @@ struct Mixed {
         equal,   ///< those of X
         lower    ///< one degree less
     };
-    /// The multiplier of the function at an end whose row defines the momentum (natural start, equal
-    /// multipliers): it is no unknown.
+    /// The multiplier at an end where the momentum is defined (natural start, equal multipliers), which
+    /// the equations do not determine.
     enum class EndMultiplier {
-        smooth,   ///< such that the multipliers are of one degree less in that element
-        zero      ///< as if the trial functions lacked this one; every degree is then held down to order 4
+        smooth,   ///< the multipliers have one degree less in that element
+        zero      ///< its function is left out; this limits the order to 4 for any degree
     };
-    /// What the next block takes over: end positions and momenta as they are, or brought onto the
+    /// Initial values of the next block: end positions and momenta unchanged, or projected onto the
     /// constraints.
     enum class Interfaces { carry, project };
-    /// Where Newton begins when the state is given at one end.
+    /// First guess of Newton's iteration if the state is given at one end.
     enum class FirstGuess {
-        march,   ///< a march of lobatto(degree + 2) over the block's elements
-        steady   ///< straight on with the velocities given: good for short blocks only
+        march,   ///< a solution by lobatto(degree + 2) on the elements of the block
+        steady   ///< constant velocities: for short blocks only
     };
 
     Basis basis = Basis::lagrange;
@@ -65,36 +65,36 @@ struct Mixed {
     Start start = Start::natural;
     Multipliers multipliers = Multipliers::equal;
     EndMultiplier end_multiplier = EndMultiplier::smooth;
-    int gauss_points = 0;   ///< an element; 0: as many as integrate polynomials exactly
-    int window = 0;         ///< elements solved together, a block; 0: all
+    int gauss_points = 0;   ///< per element; 0: enough to integrate polynomials exactly
+    int window = 0;         ///< number of elements solved together, a block; 0: all
     Interfaces interfaces = Interfaces::carry;
     FirstGuess first_guess = FirstGuess::march;
-    /// Clamped knot vector (s) of splines over all of time, whose knots are the ends of the mesh; needs a
-    /// single block. Empty: as smooth as possible, but for kinks where a load jumps or bends.
+    /// Clamped knot vector (s) of the splines, whose knots are the element ends of the mesh; needs a single
+    /// block. Empty: as smooth as possible, with kinks at jumps and kinks of loads.
     std::vector<double> knots;
-    std::vector<double> weights;   ///< of NURBS, one for each function; needs a single block
+    std::vector<double> weights;   ///< of NURBS, one per basis function; needs a single block
     SparseBackend linear_solver = SparseBackend::eigen;
 
-    /// See witness_of(). lobatto of a higher order than these elements have with any basis and pairing: their
-    /// guess, too.
+    /// See witness_of(). lobatto of a higher order than these elements with any basis and pairing; also
+    /// the first guess.
     Lobatto witness() const { return {degree + 2}; }
 };
 
-// The words of choices in scenarios, results and names of methods, in the order of the enumerators.
+// Words of these choices in scenarios, results and method names, in the order of the enumerators.
 constexpr std::array<std::string_view, 2> words_of(Mixed::Start) { return {"natural", "strong"}; }
 constexpr std::array<std::string_view, 2> words_of(Mixed::Multipliers) { return {"equal", "lower"}; }
 constexpr std::array<std::string_view, 2> words_of(Mixed::EndMultiplier) { return {"smooth", "zero"}; }
 constexpr std::array<std::string_view, 2> words_of(Mixed::Interfaces) { return {"carry", "project"}; }
 constexpr std::array<std::string_view, 2> words_of(Mixed::FirstGuess) { return {"march", "steady"}; }
 
-/// That of a choice whose words stand beside it like these.
+/// The word of a choice that has words_of().
 template <class Choice>
 constexpr std::string_view word_of(Choice choice)
 {
     return words_of(choice)[static_cast<std::size_t>(choice)];
 }
 
-/// Energy-momentum midpoint rule of order 2, a step an element: it shares nothing with spacetime elements.
+/// Energy-momentum midpoint rule of order 2, one step per element; shares no code with spacetime elements.
 struct Midpoint {
     Lobatto witness() const { return {3}; }   ///< see witness_of()
 };
@@ -104,10 +104,10 @@ struct Endpoint {
     Radau witness() const { return {3}; }   ///< see witness_of()
 };
 
-/// Lobatto; Radau where fast decays, or vibrations that do not matter, would rule lobatto's elements. With an
-/// accuracy only; Solution::method says what was taken.
+/// Lobatto, or Radau if fast decay or irrelevant vibrations would dictate the element length of lobatto. With
+/// an accuracy only; Solution::method is the method used.
 struct AutomaticFamily {
-    int degree = 0;   ///< 1..16, radau takes 8 of it at most; 0: as the accuracy has it, see Span
+    int degree = 0;   ///< 1..16, radau uses at most 8; 0: chosen for the accuracy, see Span
 };
 
 using Method = std::variant<Lobatto, Radau, Mixed, Midpoint, Endpoint, AutomaticFamily>;
@@ -119,14 +119,14 @@ inline bool is_nodal(const Method& method)
            std::holds_alternative<AutomaticFamily>(method);
 }
 
-/// Not the classical rules.
+/// Whether the method has time elements, unlike the classical rules.
 inline bool is_elements(const Method& method)
 {
     return is_nodal(method) || std::holds_alternative<Mixed>(method);
 }
 
-/// Nodal elements of a higher order, on whose second solution on the same mesh the error of a method is told;
-/// of nodal elements themselves, as they are.
+/// The method of the second solution, from which the error is estimated: nodal elements of a higher order on
+/// the same mesh; nodal elements themselves unchanged.
 inline Method witness_of(const Method& method)
 {
     return std::visit(
@@ -139,7 +139,7 @@ inline Method witness_of(const Method& method)
         method);
 }
 
-/// The elements between the knots of a method that has some. Throws what is wrong with knots and weights.
+/// The elements between the knots of a method with knots. Throws InputError for invalid knots or weights.
 TimeMesh mesh_of_knots(const Mixed& mixed);
 
 /// "lobatto(6)", "radau(4)", "mixed(bspline, 2, natural, equal)", "midpoint", "endpoint", "auto".

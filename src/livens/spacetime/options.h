@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a motion is solved, beside its method: tolerances, and what is asked for beside the motion.
+// Options of solve() other than the method: tolerances and additional results.
 #pragma once
 
 #include <array>
@@ -13,48 +13,48 @@
 namespace [[gnu::visibility("default")]] livens {
 
 struct SolveOptions {
-    /// Newton stops when the estimated error of the scaled increment is below this (relative to the motion
-    /// inside the element, at least to 1e-6 of the model's length), or at the rounding level of the residual.
-    /// Elements of lobatto and radau: at 1e-10 at the latest where an estimate or a growth compares motions.
+    /// Newton's iteration stops when the estimated error of the scaled increment is below this (relative to
+    /// the motion within the element, but at least to 1e-6 model lengths), or at the rounding level of the
+    /// residual. lobatto and radau use 1e-10 at most if an estimate or a growth compares motions.
     double tolerance = 1e-14;
     int max_iterations = 30;
     StartPolicy initial = StartPolicy::check;
     ProgressCallback progress;
     int threads = 0;   ///< reserved
-    /// What the motion may take in memory before a march to an accuracy is given up: it says beforehand only
-    /// where it ends.
+    /// Memory limit in bytes for solutions to an accuracy, whose number of elements is not known in
+    /// advance.
     double most_bytes = 8.0 * (1u << 30);
-    /// Condition numbers of the whole matrix, in the report: of the last block (mixed), of all elements
-    /// together, reduced to the free motions (lobatto).
+    /// Whether the report contains condition numbers: of the matrix of the last block (mixed), or of all
+    /// elements together, reduced to the free motions (lobatto).
     bool condition = false;
-    /// Elements of lobatto that fail, or meet a root of their equations that is none, are divided into two
-    /// (from a state).
+    /// Whether elements of lobatto that fail, or converge to a spurious root, are divided in two (from a
+    /// state).
     bool divide = true;
-    /// Elements of lobatto and radau end, beside their mesh, where the law of a load bends or jumps on the
-    /// way (marches forwards).
+    /// Whether elements of lobatto and radau also end at kinks and jumps of loads that are detected during
+    /// the solution (forward in time).
     bool end_at_bends = true;
-    /// Laws of loads that need not be smooth are compared inside of elements with what their load points have
-    /// of them; false: as if they were smooth, for comparison.
+    /// Whether load laws that may not be smooth are inspected inside elements, between quadrature points;
+    /// false treats them as smooth, for comparison.
     bool look_at_laws = true;
-    /// Every window by Newton's iteration with its tangent: the reference for quicker ways to the same
-    /// motion.
+    /// Solve every window by Newton's iteration with its tangent: the reference for faster algorithms with
+    /// the same result.
     bool by_newton = false;
-    /// How far bodies may be from where a joint that begins to act holds them, in lengths, rad and of the
-    /// fastest rate; at least the accuracy that is asked for. Farther off would be an impact, which ends the
-    /// motion. Infinite: they are moved there, and nothing is said.
+    /// Permitted violation of a joint when it engages, in model lengths, rad and relative to the fastest
+    /// rate; at least the accuracy. A larger one would be an impact, which ends the motion. Infinite: the
+    /// bodies are projected without notice.
     double meeting = 1e-6;
-    bool judge = true;   ///< false: the caller asks estimate() and judge() himself, or does without
-    /// What tells the error of the motion, where it is judged.
+    bool judge = true;   ///< false: the caller calls estimate() and judge(), or omits them
+    /// Error estimate of a motion that is judged.
     enum class Estimate {
         second,   ///< a second solution on the same mesh, of degree + 1 (lobatto from degree 4, under loads
                   ///< or in elements that hardly resolve the motion: + 2); mixed and the classical rules:
                   ///< by witness_of() them
-        local,    ///< what every element loses by its velocity jump, grown as neighbouring motions part: one
-                  ///< number for all bodies, too large by ten often; nothing of velocities and
-                  ///< reactions (lobatto and radau on a mesh, state at the start)
+        local,    ///< local errors from velocity jumps, amplified as neighbouring motions separate: one
+                  ///< number for all bodies, often ten times too large; none for velocities and
+                  ///< reactions (lobatto and radau on a mesh, given initial state)
         none
     } estimate = Estimate::second;
-    /// Whether a neighbouring motion tells how perturbations grow, after the estimate (state at the start).
+    /// Whether to measure the growth of perturbations by a neighbouring motion (given initial state).
     bool growth = false;
 };
 

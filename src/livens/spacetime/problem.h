@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is asked: conditions at the ends of time.
+// Conditions at the start and end of the motion.
 #pragma once
 
 #include <array>
@@ -14,13 +14,13 @@ namespace [[gnu::visibility("default")]] livens {
 
 class Prepared;
 
-/// What is known at one end of time.
+/// Quantities prescribed at one end of the motion.
 enum class Known {
     nothing,
     positions,   ///< X
-    momenta,   ///< of each body the linear momentum and the moment of momentum about its reference point, in
-               ///< world axes: those of the X and V that are stated
-    state      ///< X and momenta
+    momenta,     ///< linear momentum and angular momentum about the reference point of each body, in world
+                 ///< axes, computed from the given X and V
+    state        ///< X and momenta
 };
 
 /// In scenarios, in this order.
@@ -32,9 +32,9 @@ constexpr std::array<std::string_view, 4> words_of(Known)
 inline bool knows_positions(Known known) { return known == Known::positions || known == Known::state; }
 inline bool knows_momenta(Known known) { return known == Known::momenta || known == Known::state; }
 
-/// Conditions at the ends of time, for all bodies alike. Two halves must be known: the state at one end, or
-/// positions or momenta at each. Stated values that are not known serve as a guess: V where positions are
-/// known, X where momenta are (zeros mean none).
+/// Conditions at both ends, the same for all bodies. Two halves must be prescribed: the state at one end, or
+/// positions or momenta at each. Given values that are not prescribed serve as a first guess: V with
+/// prescribed positions, X with prescribed momenta (zeros mean none).
 struct Conditions {
     State start;
     Known at_start = Known::state;
@@ -44,13 +44,13 @@ struct Conditions {
 
 struct Problem {
     Conditions conditions;
-    /// A motion that is about right, for conditions at both ends; empty: one is made from the conditions.
+    /// First guess of the motion for conditions at both ends; empty: constructed from the conditions.
     std::function<State(double t)> guess{};
-    /// A motion of the same bodies that is near: marches of lobatto(p) take it as their guess where their
-    /// elements are its own. Must outlive the solution. Null: there is none.
+    /// A nearby motion of the same bodies: lobatto(p) uses it as first guess where the elements are the same.
+    /// Must outlive the solution. Null: none.
     const Motion* near = nullptr;
-    /// What was found of the model when it was solved before, for less work; null: nothing, and nothing is
-    /// kept. One thread at a time.
+    /// Cached results from an earlier solution of this model; null: nothing is cached. For one thread at a
+    /// time.
     std::shared_ptr<Prepared> prepared{};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one entry: model, conditions, time elements and method in; motion and report out.
+// The entry point: takes model, conditions, time and method; returns motion and report.
 #pragma once
 
 #include <functional>
@@ -18,76 +18,76 @@ namespace [[gnu::visibility("default")]] livens {
 
 struct Solution {
     Motion motion;        ///< up to the last good element end
-    Method method;        ///< that was taken: a degree that was left open is chosen
-    SolveReport report;   ///< `suspect` if the verdict has reasons; the first of them is its message
+    Method method;        ///< as used, with the degree if it was left open
+    SolveReport report;   ///< status `suspect` if the verdict has reasons; its message is the first
     Verdict verdict{};
     ErrorEstimate estimate{};
-    /// By how much a perturbation of the start has grown, at element ends, in lengths and rad by lengths and
-    /// rad at the start; empty if nobody asked, as far as the neighbouring motion came if it failed.
+    /// Growth factor of an initial perturbation at element ends (both in model lengths and rad); empty if not
+    /// requested, shorter if the neighbouring motion failed.
     std::vector<double> growth{};
-    /// What the rounding of numbers, at the start and on the way, has grown to, in lengths and rad, at
-    /// element ends; empty where 2^-53 of the growth tells enough.
+    /// Accumulated rounding errors at element ends, in model lengths and rad; empty if 2^-53 times the growth
+    /// is a sufficient estimate.
     std::vector<double> rounding{};
-    Growing growing{};              ///< what of it grows most, up to the horizon or the end
-    Growing rounding_in{};          ///< likewise of `rounding`
-    std::vector<Unseen> unseen{};   ///< what laws of loads did inside of elements, see Unseen
-    double estimate_seconds = 0;    ///< that the second solution and the neighbouring motion took
-    /// Why the motion has no beginning, where that is a matter of the motion before it; solve() throws it.
+    Growing growing{};              ///< the part that grows most, up to the horizon or the end
+    Growing rounding_in{};          ///< likewise for `rounding`
+    std::vector<Unseen> unseen{};   ///< findings on load laws inside elements, see Unseen
+    double estimate_seconds = 0;    ///< time of the second solution and the neighbouring motion
+    /// Why the motion cannot begin, if that follows from the preceding motion; solve() throws it.
     std::optional<Complaint> cannot_begin{};
 };
 
-/// Throws InputError for wrong input (degree out of range, a start that does not fit, see consistent_start(),
-/// pairings and conditions that make no solvable system, `mass-singular` where the method divides by m).
-/// Numerical failure is in the report.
-/// With an accuracy the motion comes with its estimate, or with the status `inaccurate`.
+/// Throws InputError for invalid input (degree out of range, inconsistent initial state, see
+/// consistent_start(), pairings or conditions without a solvable system, `mass-singular` if the method needs
+/// the inverse of m). Numerical failure is reported in the report.
+/// With an accuracy, the motion has an error estimate below it, or the status `inaccurate`.
 Solution solve(const Model& model, const Problem& problem, const Time& time, const Method& method,
                const SolveOptions& options = {});
 
-/// What solve() does before it judges, if asked to and if the iteration converged: a second solution, and how
-/// far it is from the first, where it fails the report says why; and growth(), if asked for. Nothing that
-/// ends it (memory, the caller's word) costs the motion: the report says what is not known.
+/// Called by solve() before judge(), if requested and if the iteration converged: computes a second solution
+/// and its distance from the first, and growth() if requested. If the second solution fails, the report gives
+/// the reason. Lack of memory or cancellation never discards the motion; the report says what is not known.
 void estimate(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
               Solution& solution);
 
-/// By how much a small perturbation of all positions and velocities at the start (velocities by the fastest
-/// rate there is) has grown at element ends: the larger of two where the first one grows by much, by
-/// neighbouring motions over the same elements that are brought near again where they part (docs/theory.md,
-/// "The horizon"). Empty where nothing can move, or without a state at the start.
+/// Growth factors, at element ends, of a small initial perturbation of all positions and velocities
+/// (velocities divided by the fastest rate). Computed from neighbouring motions over the same elements, which
+/// are rescaled as they separate; the larger of two if the first grows strongly (docs/theory.md,
+/// "The horizon"). Empty if nothing can move, or without an initial state.
 struct Growth {
     std::vector<double> factors{};
     Growing part{};
-    double later = 1;                 ///< bounds what perturbations on the way grow by
-    std::vector<double> rounding{};   ///< what 1 at the start and in each element grows to
+    double later = 1;                 ///< bound of the growth of later perturbations
+    std::vector<double> rounding{};   ///< growth of errors of 1 at the start and in each element
     Growing rounding_in{};
 };
-/// `told`: where 2^-53 of it would be more, in lengths and rad, or where it is beyond the horizon, what
-/// rounding grows to is measured by itself.
+/// `told`: if 2^-53 times the growth exceeds this, in model lengths and rad, or beyond the horizon, the
+/// growth of rounding errors is measured separately.
 Growth growth(const Model& model, const Problem& problem, const Method& method, const SolveOptions& options,
               const Motion& motion, double told = std::numeric_limits<double>::infinity());
 
-/// What solve() does last: measures the motion, compares it with what was stated at the ends of time, and
-/// lets the verdict decide between converged and suspect. An estimate that the solution has counts. Half a
-/// second of CPU time after `goes_on` says no, or where memory ends, the motion stays unjudged: a note says
-/// so, the verdict knows nothing, and what had converged is `cancelled` or `suspect`.
+/// The last step of solve(): measures the motion, compares it with the conditions at both ends, and decides
+/// between converged and suspect; an available error estimate is taken into account. The motion remains
+/// unjudged half a second of CPU time after `goes_on` returns false, or if memory is exhausted: a note says
+/// so, the verdict has no figures, and a converged motion becomes `cancelled` or `suspect`.
 void judge(const Model& model, const Problem& problem, const SolveOptions& options, Solution& solution,
            const std::function<bool()>& goes_on = {});
 
-/// Throws what solve() would throw for this input, without solving.
+/// Throws the same errors as solve() for this input, without solving.
 void check_method(const Model& model, const Problem& problem, const Time& time, const Method& method,
                   const SolveOptions& options = {});
 
-/// State and reactions at any instant in the full order of the method: one shortened element is solved from
-/// the start of the element that contains t (from the stored end state). Status and message are in the
-/// report. A degree that was left open is that of the motion.
+/// State and reactions at any time in the full order of the method: solves one shortened element from the
+/// start of the element that contains t (from the stored end state). Status and message are in the report. A
+/// degree that was left open is that of the motion.
 struct ExactSample {
     State state;
-    std::vector<JointSample> joints;   ///< as sample_joints() has them, of the acceleration level
+    std::vector<JointSample> joints;   ///< as from sample_joints(), at acceleration level
     SolveReport report;
 };
 ExactSample sample_exactly(const Model& model, const Motion& motion, const Method& method, double t,
                            const SolveOptions& options = {});
 
-/// sample_exactly() at many instants: what follows from model and motion is found once.
+/// sample_exactly() at many times: results that depend on model and motion alone are computed once.
 class ExactSampler {
 public:
     /// Model and motion must outlive it.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Loads whose size is a law of coordinates and their rates, also of bodies on which they do not act.
+// Loads whose magnitude is a law of coordinates and their rates, also of bodies on which they do not act.
 #pragma once
 
 #include <functional>
@@ -13,11 +13,11 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
-/// What a law looks at: a displacement, or an angle, and its rate.
+/// An argument of a law: a displacement or an angle, and its rate.
 struct LawCoordinate {
     JointCoordinate coordinate;
-    double at_stated = 0;    ///< what it is called where the bodies are at the start
-    bool is_needed = true;   ///< false: the law looks at the rate alone, so that turns need not be known
+    double at_stated = 0;    ///< its value in the initial configuration
+    bool is_needed = true;   ///< false: the law uses the rate alone, so that full turns need not be known
 };
 
 struct LawArguments {
@@ -77,7 +77,7 @@ struct LoadParts {
     LawGuards guards{};
     /// The law is linear, or as smooth as the motion for other reasons; see Load::is_smooth.
     bool is_smooth = false;
-    LawSteepness steepest = nullptr;   ///< if not
+    LawSteepness steepest = nullptr;     ///< if not
     bool is_smooth_off_centre = false;   ///< but for where guards.centre is zero; see LawInside
     std::vector<double> breaks{};
     std::string domain{};
@@ -102,16 +102,16 @@ struct BodyFrame {
     Matrix3 axes = identity<3>();
 };
 
-/// By u: three displacements in m, three components of a rotation in rad.
+/// Matrices by u: three displacements in m, three components of a rotation vector in rad.
 struct Bushing {
     Matrix<6, 6> stiffness{};   ///< N/m, N m/rad and mixed; symmetric and not negative
     Matrix<6, 6> damping{};     ///< the same by u'
-    Matrix<6, 1> preload{};     ///< N, N m: against u, wherever it is
+    Matrix<6, 1> preload{};     ///< N, N m: constant, with the sign of the elastic forces at positive u
 };
 
-/// An elastic bearing between two frames: u holds the displacement of the second frame's point in axes of the
-/// first, and the rotation vector from the first frame to the second in these axes. It does the work
-/// -(K u + C u' + preload) . du, so that K and preload have a potential however far it turns, up to 175
+/// An elastic bearing between two frames: u holds the displacement of the second frame relative to the first
+/// and the rotation vector from the first frame to the second, both in axes of the first. The work is
+/// -(K u + C u' + preload) . du, so that K and preload have a potential for rotations of any size up to 175
 /// degrees. Throws InputError (`bushing-matrix`) for matrices that are not symmetric or negative.
 Load bushing(const std::string& name, int first, const BodyFrame& frame_first, int second,
              const BodyFrame& frame_second, const Bushing& law, const Configurations& X);
@@ -122,18 +122,18 @@ struct Drag {
     Vector3 medium{};       ///< its velocity, m/s, world axes
 };
 
-/// -(linear + quadratic |v|) v at a point of a body, v its velocity against the medium.
+/// -(linear + quadratic |v|) v at a point of a body, v its velocity relative to the medium.
 Load drag(const std::string& name, int body, const Vector3& point, const Drag& law, const Configurations& X);
 
 struct Attraction {
     Vector3 point{};             ///< m, world
     double mu = 0;               ///< m^3/s^2, positive
-    bool has_gradient = false;   ///< also what the body's extent does, to second order [MacCullagh]
+    bool has_gradient = false;   ///< includes the gravity gradient, to second order [MacCullagh]
 };
 
 /// Gravity toward a point of the world: -mu m r / |r|^3 at the centre of mass, and with the gradient the
-/// potential -mu (m / r + (tr J - 3 n . J n) / (2 r^3)), n = r / |r|, J about the centre of mass, which turns
-/// the body. Throws InputError (`attraction-mu`) unless mu > 0.
+/// potential -mu (m / r + (tr J - 3 n . J n) / (2 r^3)), n = r / |r|, J about the centre of mass, with its
+/// torque. Throws InputError (`attraction-mu`) unless mu > 0.
 Load attraction(const std::string& name, int body, const Body& properties, const Attraction& law,
                 const Configurations& X);
 
