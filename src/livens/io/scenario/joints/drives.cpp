@@ -126,24 +126,22 @@ struct Duration {
     double ends;     ///< the drive, at the end or earlier
 };
 
-/// A drive is held in positions and in velocities, so that both are numbers while it acts; where it jumps it
-/// has one on either side.
+/// A drive is held in positions and in velocities: both are numbers while it acts, beside its events.
 void check_values(const Expression& expression, const Duration& during, const std::vector<double>& events,
                   const std::string& path)
 {
     constexpr int n_looks = 1000;   // what passes between them is no number, and the solution says so
     for (int i = 0; i <= n_looks; ++i) {
-        const double t = during.begins + (during.ends - during.begins) * i / n_looks;
-        const double near = 1e-9 * (during.ends - during.begins);
+        const double t = during.begins + (during.ends - during.begins) * i / n_looks,
+                     near = 1e-9 * (during.ends - during.begins);
         if (std::ranges::any_of(events, [&](double jump) { return std::abs(t - jump) <= near; })) continue;
         const TimeValue at = expression.by_time(t);
-        if (std::isfinite(at.value) && std::isfinite(at.first)) continue;
-        const std::string why = expression.without_value(t, {});
+        if (std::isfinite(at.value + at.first)) continue;
         const bool is_rate = std::isfinite(at.value);
         throw InputError(
             {"expression-value", path + ".expression",
              std::string("'expression' of a drive has no ") + (is_rate ? "finite rate" : "value"),
-             expression.text() + " at t = " + to_text(t, 6) + " s", "", why.empty() || is_rate ? "" : why,
+             expression.text() + " at t = " + to_text(t, 6) + " s", "", expression.without_value(t, {}),
              is_rate ? "joints start and stop with finite velocities: \"t^2\", 'step'"
                      : "set 'from' and 'until' where it has one, or take another formula"});
     }
