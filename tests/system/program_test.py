@@ -689,6 +689,20 @@ degree = 6
         self.assertEqual(peaks["unit"], "deg")
         self.assertAlmostEqual(peaks["peak"]["value"] * degree, plain["peak"]["value"], delta=1e-12)
 
+    def test_peaks_beside_jumps(self):
+        """All is driven, and a force turns round with the motion: elements beside that are nanoseconds long, and exact
+        solutions begin within rounding of it. The drive bears 500 N and m a at most, just behind the jump."""
+        self.write("jump.toml", 'format = 1\nbody = [{ name = "ram", shape = { box = [0.4, 0.08, 0.06] }, mass = 12 }]\n'
+                   'time = { end = 2 }\nstart = { initial = "project" }\n[[joint]]\nname = "slide"\ntype = "prismatic"\n'
+                   'between = ["world", "ram"]\nat = [0, 0, 0]\naxis = [1, 0, 0]\n[[drive]]\nname = "motor"\ntype = "joint"\n'
+                   'joint = "slide"\nharmonic = { amplitude = 0.2, frequency = 1 }\n[[load]]\nname = "cutting"\n'
+                   'type = "force"\nbody = "ram"\nexpression = ["-500*step(slide.displacement_rate)", "0", "0"]\n')
+        self.expect(0, "solve", "jump.toml", "-o", "jump.nc", "-q")
+        peaks = json.loads(self.expect(0, "peaks", "jump.nc", "motor.drive_force", "--json").out)["peaks"][0]
+        inertia = 12 * 0.2 * (2 * math.pi) ** 2
+        self.assertAlmostEqual(peaks["max"]["value"], 500 + inertia, delta=1e-4)
+        self.assertAlmostEqual(peaks["min"]["value"], -inertia, delta=1e-4)
+
     def test_usage_errors(self):
         self.solve()
         for arguments in (

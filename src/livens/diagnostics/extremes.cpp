@@ -37,6 +37,8 @@ struct Hunt {
     std::vector<Place> places{};
 
     void look_at(std::span<const double> t, std::span<const double> f);
+    /// The same of an element so short that its polynomials are rounding: its ends alone, which are known.
+    void look_at_ends(std::span<const double> t, std::span<const double> f);
 };
 
 constexpr double equal_values = 1e-9;     // relative
@@ -58,6 +60,11 @@ void Hunt::look_at(std::span<const double> t, std::span<const double> f)
     // Of many that are equal the first stay.
     std::ranges::stable_sort(places, [](const Place& a, const Place& b) { return a.value > b.value; });
     places.resize(most_places);
+}
+
+void Hunt::look_at_ends(std::span<const double> t, std::span<const double> f)
+{
+    for (std::size_t i = 0; i < f.size(); ++i) places.push_back({t[i], t[i], t[i], sign * f[i], 0});
 }
 
 /// How close an instant is to be found between two others.
@@ -247,21 +254,24 @@ public:
 
     void go()
     {
-        const std::vector<double> s = places_of_element(motion_);
+        const std::vector<double> inside = places_of_element(motion_), ends{0, 1};
+        // Of elements beside a jump: what accelerates there is a difference of places over h^2.
+        const double shortest = 1e-6 * (motion_.end() - motion_.start());
         std::vector<std::vector<double>> values(series_.size());
         const int n = std::max(motion_.n_elements(), 1);
         for (int e = 0; e < n; ++e) {
             Patience::ask();
             std::vector<double> t;
             for (std::vector<double>& one : values) one.clear();
-            for (const double place : s) {
+            const bool is_short = motion_.n_elements() > 0 && instant(e, 1) - instant(e, 0) < shortest;
+            for (const double place : is_short ? ends : inside) {
                 t.push_back(instant(e, place));
                 look(t.back(), place == 1 ? Side::left : Side::right, values);
                 if (motion_.n_elements() == 0) break;   // a motion that has only its start
             }
             for (std::size_t i = 0; i < values.size(); ++i) {
-                least[i].look_at(t, values[i]);
-                largest[i].look_at(t, values[i]);
+                for (Hunt* hunt : {&least[i], &largest[i]})
+                    is_short ? hunt->look_at_ends(t, values[i]) : hunt->look_at(t, values[i]);
             }
         }
     }

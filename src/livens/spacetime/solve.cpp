@@ -161,6 +161,9 @@ ExactSampler::ExactSampler(const Model& model, const Motion& motion, const Metho
         StartPolicy::project;   // an end state holds its constraints to rounding; polish, never refuse
     options_.judge = false;
     options_.meeting = std::numeric_limits<double>::infinity();
+    // The element was accepted whole: its laws bend at its ends alone. Where one begins within rounding of a
+    // bend, looks would find that at every division anew.
+    options_.divide = options_.end_at_bends = options_.look_at_laws = false;
 }
 
 ExactSample ExactSampler::at(double t) const
