@@ -43,6 +43,8 @@ TIES = [
     ("(up to $«10^{-13}»$ where a squared pivot", f"{KERNEL}/march_kernel.cpp", r"most_rounding = ([^;]+);"),
     ("is open or bent by more than $«10^{-10}»$ between the nodes in question, is refused, and so is one whose joints are open by more than $«10^{-9}»$",
      f"{NODAL}/branches.cpp", r"(?=.*?open_between = ([^;]+);).*?open_at_end = ([^,]+),"),
+    ("polynomials and refined states, and «1e-4» of the value", "src/livens/diagnostics/extremes.cpp", r"alike = ([^;]+);"),
+    ("Of elements shorter than «1e-6» of the motion", "src/livens/diagnostics/extremes.cpp", r"shortest = (\S+) \*"),
     ("with new bases until that is less than «1e-9» lengths", f"{NODAL}/system.cpp", r"fits = ([^;]+);"),
     ("rates guessed as «0.95», «0.93» and «0.9» of the true ones", "tests/convergence/ends.cpp", r"0\.97, ([\d.]+), ([\d.]+), ([\d.]+), 0\.85"),
     ("all rates from «0.8» to 1 come to the motion", "tests/convergence/ends.cpp", r"0\.9, 0\.85, ([\d.]+)\}"),
