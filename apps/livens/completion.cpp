@@ -254,6 +254,8 @@ int completion_command(const CompletionArguments& arguments, const std::vector<C
         const Scenario scenario = scenario_of_run(read_run(arguments.sensors), arguments.sensors);
         std::vector<std::string> names;
         for (const Sensor& sensor : scenario.model.sensors()) names.push_back(sensor.name);
+        for (const NamedPoint& point : scenario.model.points())
+            if (point.body != world) names.push_back(point.name);
         return print_names(names);
     }
     if (arguments.shell.empty())

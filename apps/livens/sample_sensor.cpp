@@ -24,6 +24,17 @@ struct Found {
     std::size_t first = 0;
 };
 
+/// The model, with a sensor at the point of that name, if there is one.
+Model with_point(const Model& model, const std::string& name)
+{
+    Model all = model;
+    const int point = model.find_point(name);
+    if (point < 0 || model.points()[static_cast<std::size_t>(point)].body == world) return all;
+    const NamedPoint& at = model.points()[static_cast<std::size_t>(point)];
+    all.add_sensor(point_sensor(name, at.body, at.position, model.start().X));
+    return all;
+}
+
 Found find_sensor(const Model& model, const std::string& name)
 {
     Found found;
@@ -33,6 +44,8 @@ Found find_sensor(const Model& model, const std::string& name)
         known += (known.empty() ? "'" : ", '") + sensor.name + "'";
         found.first += sensor.components.size();
     }
+    for (const NamedPoint& point : model.points())
+        if (point.body != world) known += (known.empty() ? "'" : ", '") + point.name + "'";
     throw failure(exit_usage,
                   fmt::format("the run has no sensor '{}'; it has {}", name, known.empty() ? "none" : known));
 }
@@ -97,8 +110,9 @@ std::string text_of(const Sensor& sensor, const std::vector<ShownUnit>& units, d
 std::string sample_sensor(const SampleArguments& arguments, const Common& common, const Run& run,
                           const Scenario& scenario, const std::vector<double>& times)
 {
-    const Found found = find_sensor(scenario.model, arguments.sensor);
-    const SensorReadings readings(scenario.model, run.motion);
+    const Model model = with_point(scenario.model, arguments.sensor);
+    const Found found = find_sensor(model, arguments.sensor);
+    const SensorReadings readings(model, run.motion);
     std::vector<std::vector<double>> rows;
     for (const double t : times) {
         const std::vector<double> all =

@@ -160,7 +160,7 @@ def method_for(word: str) -> str:
     if plain_word(word) in ("motor", "rotationalmotor", "jointmotor", "motion", "servo"):
         return ("m.add_joint_drive(name, joint, rate=..) where its motion is known, "
                 "m.add_actuator(name, joint, value=..) where its torque is")
-    for kind in KINDS[1:]:
+    for kind in [kind for kind in KINDS if schema().children[kind]["kinds"]]:
         choices = [k["word"] for k in schema().children[kind]["kinds"]]
         suffix = "" if kind in ("joint", "load") else f"_{kind}"
         bare = re.sub(rf"_?{kind}$", "", word, flags=re.IGNORECASE) or word

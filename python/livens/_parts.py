@@ -199,7 +199,7 @@ class BodySeries(Part):
         if not isinstance(given, (tuple, list)) or len(given) != 3:
             raise fault("wrong-type", "a point has three coordinates, as in (0.5, 0, 0)", "at")
         numbers = [_core.quantity(item, "m", "") if isinstance(item, str) else float(item) for item in given]
-        return PointSeries(self, np.array(numbers))
+        return PointSeries(self._series, f"point of {self.name}", 0, self, np.array(numbers))
 
     @property
     def linear_momentum(self) -> Floats:
@@ -244,45 +244,49 @@ class BodySeries(Part):
         return self._series._estimate("velocity", self._index)
 
 
-class PointSeries:
-    """A point of a body along a motion, world axes; see :meth:`BodySeries.point`.
+class PointSeries(Part):
+    """A point along a motion, world axes: a named one of the model, or one of a body; see :meth:`BodySeries.point`.
 
     Example:
         >>> import livens as lv
         >>> m = lv.Model()
         >>> top = m.add_body("top", lv.sphere("10 cm", mass=1), angular_velocity=(0, 0, 2))
-        >>> rim = lv.solve(m, 1)["top"].point(("10 cm", 0, 0))
-        >>> (rim.acceleration[0] + 0.0).round(9).tolist()
+        >>> rim = m.add_point("rim", top, position=("10 cm", 0, 0))
+        >>> sol = lv.solve(m, 1)
+        >>> (sol["rim"].acceleration[0] + 0.0).round(9).tolist()
+        [-0.4, 0.0, 0.0]
+        >>> (sol["top"].point(("10 cm", 0, 0)).acceleration[0] + 0.0).round(9).tolist()
         [-0.4, 0.0, 0.0]
     """
 
-    def __init__(self, body: BodySeries, at: Floats) -> None:
-        self._body = body
-        self._arm: Floats = np.zeros_like(body.position) if not at.any() else np.asarray(at @ body.directors)
-
-    @property
-    def t(self) -> Floats:
-        """Instants, s, shape (n,)."""
-        return self._body.t
+    def __init__(self, series: Series, name: str, index: int, body: BodySeries | None, at: Floats) -> None:
+        super().__init__(series, name, index)
+        self._body = body   # None: the world
+        shape = (3,) if series._is_single else (len(series._instants()), 3)
+        self._still: Floats = np.zeros(shape)
+        self._arm: Floats = self._still + at if body is None else (
+            self._still if not at.any() else np.asarray(at @ body.directors))
 
     @property
     def position(self) -> Floats:
         """m, shape (n, 3)."""
-        return self._body.position + self._arm
+        return self._arm if self._body is None else self._body.position + self._arm
 
     @property
     def velocity(self) -> Floats:
         """m/s, shape (n, 3)."""
+        if self._body is None:
+            return self._still
         velocity: Floats = self._body.velocity + (np.cross(self._body.angular_velocity, self._arm) if self._arm.any() else 0)
         return velocity
 
     @property
     def acceleration(self) -> Floats:
         """m/s^2, shape (n, 3); see :attr:`BodySeries.acceleration`."""
-        return self._body._moved(self._body.acceleration, self._arm)
+        return self._still if self._body is None else self._body._moved(self._body.acceleration, self._arm)
 
-    def __repr__(self) -> str:
-        return f"<livens point of '{self._body.name}' at {self._body._series._n_text()}: position, velocity, acceleration>"
+    def arrays(self) -> dict[str, Floats]:
+        return {name: getattr(self, name) for name in ("position", "velocity", "acceleration")}
 
 
 class JointSeries(Part):

@@ -122,6 +122,21 @@ nb::list sensors(const Result& r)
     return all;
 }
 
+/// Of named points: name, body (None: the world) and place in its axes.
+nb::list points(const Result& r)
+{
+    nb::list all;
+    const Model& model = r.scenario->model;
+    for (const NamedPoint& point : model.points()) {
+        const Vector3& p = point.position;
+        all.append(nb::make_tuple(
+            point.name,
+            point.body == world ? nb::none() : nb::object(nb::str(model.body_name(point.body).c_str())),
+            nb::make_tuple(p[0], p[1], p[2])));
+    }
+    return all;
+}
+
 nb::list loads(const Result& r)
 {
     nb::list all;
@@ -310,6 +325,7 @@ void add_results(nb::module_& m)
         .def_prop_ro("body_names", [](const Result& r) { return r.run.body_names; })
         .def_prop_ro("joints", &joints)
         .def_prop_ro("sensors", &sensors)
+        .def_prop_ro("points", &points)
         .def_prop_ro("loads", &loads)
         .def_prop_ro("figures", &figures)
         .def_prop_ro("is_damping", [](const Result& r) { return r.run.motion.damps(); })

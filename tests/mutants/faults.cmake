@@ -1197,7 +1197,7 @@ livens_mutant(NAME shortest_unit
 # A run whose text has the file's own values: made again, it is another one.
 livens_mutant(NAME set_values_not_kept
               FILE io/scenario/scenario.cpp
-              OLD [[scenario.text = with_set_values(std::move(scenario.text), parameters);]]
+              OLD [[scenario.text = with_set_values(std::move(scenario.text), assembly.top().parameters());]]
               NEW [[;]]
               TESTS_OF unit_io
               MUST_FAIL ParametersOfScenarios.ThatAreSetStandInTheTextThatIsKept)
@@ -1217,3 +1217,51 @@ livens_mutant(NAME index_without_parentheses
               NEW [[return digits;]]
               TESTS_OF unit_io
               MUST_FAIL Repeat.CountsFromAnyFirstIndexUnderAnyName)
+
+# What turns with a model that is added stays behind by a sign.
+livens_mutant(NAME added_rows_shifted_back
+              FILE multibody/relocation.cpp
+              OLD [[moved.b_i = turned_i - outer(]]
+              NEW [[moved.b_i = turned_i + outer(]]
+              TESTS_OF properties
+              MUST_FAIL Relocated.JointsHoldWhatTheyHeld)
+
+# Velocities of what was added are seen as they are in the world.
+livens_mutant(NAME added_loads_see_world_velocities
+              FILE multibody/relocation.cpp
+              OLD [[seen.V[k] = back_.rotation * at.V[k];]]
+              NEW [[seen.V[k] = at.V[k];]]
+              TESTS_OF properties
+              MUST_FAIL Relocated/EveryMovedLoad.RunsInLanesAndPullsWhatItPulled/drag_drag)
+
+# The same on a tape: places are turned back and not moved back.
+livens_mutant(NAME added_arms_not_moved_back
+              FILE multibody/loads/load_tape.cpp
+              OLD [[v = v - vector(shift * load_.frame.position);]]
+              NEW [[(void)shift;]]
+              TESTS_OF properties
+              MUST_FAIL Relocated/EveryMovedLoad.RunsInLanesAndPullsWhatItPulled/attraction_*)
+
+# Drives and loads of an included file begin where it was stated, and not where the start has led it.
+livens_mutant(NAME included_files_do_not_settle
+              FILE io/scenario/assembly.cpp
+              OLD [[if (builder_.model().version() != stated) settle();]]
+              NEW [[;]]
+              TESTS_OF unit_io
+              MUST_FAIL Include.PartsBeginWhereTheStartHasLedThem)
+
+# A file outside of the folder is found by a way that climbs.
+livens_mutant(NAME includes_climb
+              FILE io/scenario/bodies/meshes.cpp
+              OLD [[        if (part == "..")]]
+              NEW [[        if (part == "...")]]
+              TESTS_OF unit_io
+              MUST_FAIL Include.WhatCannotBeIncludedIsOneErrorAtTheKey)
+
+# A point is taken for one of the body that the section names, whichever it is on.
+livens_mutant(NAME points_of_other_bodies
+              FILE io/scenario/bodies/named_points.cpp
+              OLD [[if (builder.body_name(point.body) == body) return true;]]
+              NEW [[return true;]]
+              TESTS_OF unit_io
+              MUST_FAIL NamedPoints.OneMistakeIsOneError)

@@ -71,6 +71,8 @@ TEST(ExamplesOfCodes, TheWrongOnesLeadToTheCodeAndTheRightOnesToNone)
 /// Meshes are files of their own.
 bool needs_file(std::string_view code)
 {
+    for (const char* include : {"include-file", "include-limit", "include-path", "include-ring"})
+        if (code == include) return true;
     return code.starts_with("mesh-") || code == "surface-unknown" || code == "density-field";
 }
 

@@ -544,6 +544,8 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                    "start-changed", "drive-turns", "end-position", "end-velocity", "point-outside",
                    "spring-kink", "directors-dependent", "directors-metric", "directors-nearly-orthonormal",
                    "io-directory", "io-not-found", "io-unreadable"});   // here, of meshes, of hostile files
+    others.insert({"point-body", "point-unknown", "gravity-differs", "include-file", "include-ignored",
+                   "include-limit", "include-path", "include-ring", "include-source"});   // their own tests
     others.insert(codes_of_others.begin(), codes_of_others.end());
     for (const Case& c : cases()) {
         EXPECT_NE(explain(c.code), "") << c.code;

@@ -275,6 +275,7 @@ Model restated(const Model& model, const State& state, const std::vector<Led>& a
     std::vector<Joint> joints = model.joints();
     for (const Led& led : all) joints[led.joint].coordinates[led.coordinate].at_stated = led.to;
     for (Joint& joint : joints) moved.add_joint(std::move(joint));
+    for (const NamedPoint& point : model.points()) moved.add_point(point);
     return moved;
 }
 

@@ -11,11 +11,8 @@
 
 #include "livens/base/text.h"
 #include "livens/dynamics/start/prepared.h"
-#include "livens/io/scenario/bodies/bodies.h"
-#include "livens/io/scenario/joints/joints.h"
-#include "livens/io/scenario/loads/load_kinds.h"
+#include "livens/io/scenario/assembly.h"
 #include "livens/io/scenario/run/run.h"
-#include "livens/io/scenario/schema/repeat.h"
 #include "livens/io/scenario/text/tree.h"
 #include "livens/spacetime/solve.h"
 
@@ -26,7 +23,7 @@ namespace {
 bool check_counts(const Section& top, Findings& findings)
 {
     const int before = findings.n_errors();
-    for (const std::string kind : {"body", "joint", "load"}) {
+    for (const std::string kind : {"body", "joint", "load", "point"}) {
         const std::span<const Section> sections = top.sections(kind);
         if (sections.size() > max_bodies)
             sections[max_bodies].error("", "resource-limit",
@@ -90,32 +87,31 @@ std::vector<Override> overrides_of(const ParameterValues& values)
 }
 
 /// Everything behind the parser. The scenario counts if there is no error.
-void build(const Node& root, TreePart part, const MeshSource& meshes, const ParameterValues& values,
+void build(const Node& root, TreePart part, const MeshSource& files, const ParameterValues& values,
            Scenario& scenario, Findings& findings)
 {
     if (!check_format(root, findings)) return;
-    const Parameters parameters(root.find("parameters"), overrides_of(values), findings);
-    std::optional<Node> expanded;
-    if (root.find("repeat") != nullptr && !(expanded = without_repeats(root, parameters, findings))) return;
-    const Section top(expanded ? *expanded : root, root_table(), "the scenario", findings, parameters);
-    if (!check_counts(top, findings)) return;
-    warn_of_gravity(top, findings);
-    // The order is that of references: joints name bodies, the start moves them along joints, drives begin
-    // where the joints stand then, and loads read sensors, except for sensors that read loads.
-    Builder builder(top, meshes, findings);
-    read_bodies(builder);
-    scenario.mesh_files = builder.meshes().files();   // also where there are errors
-    read_joints(builder);
-    move_bodies(builder);
-    read_drives(builder);
-    read_sensors(builder, false);
-    read_loads(builder);
-    read_sensors(builder, true);
+    AssemblySources sources(files, findings);
+    const bool has_file = files.folder && !scenario.file.empty();
+    Assembly assembly(root, has_file ? std::filesystem::path(scenario.file).filename().generic_string() : "",
+                      overrides_of(values), sources);
+    if (!assembly.is_readable() || !check_counts(assembly.top(), findings)) return;
+    warn_of_gravity(assembly.top(), findings);
+    assembly.read_model();
+    scenario.mesh_files = sources.meshes.files();   // also where there are errors
+    scenario.mesh_files.insert(scenario.mesh_files.end(), sources.texts.files().begin(),
+                               sources.texts.files().end());
     if (part == TreePart::model) return;
+    assembly.remember_places();
+    Builder& builder = assembly.builder();
     read_run(builder, scenario);
+    const Section* end = only_section(assembly.top(), "end");
+    // Where [end] is faulty, bodies cannot be judged.
+    if (end == nullptr || end->is_valid())
+        assembly.read_ends(scenario.conditions.at_end != Known::nothing, scenario.conditions.end);
     if (findings.n_errors() > 0) return;
-    parameters.warn_of_unused(findings);
-    scenario.text = with_set_values(std::move(scenario.text), parameters);
+    assembly.warn_of_unused_parameters();
+    scenario.text = with_set_values(std::move(scenario.text), assembly.top().parameters());
     scenario.conditions.start = builder.model().start();
     scenario.conditions.start.t = start_of(scenario.time);
     scenario.conditions.end.t = end_of(scenario.time);
@@ -129,7 +125,7 @@ void build(const Node& root, TreePart part, const MeshSource& meshes, const Para
     scenario.model = std::move(builder.model());
     scenario.outlines = std::move(builder.outlines());
     scenario.parts = std::move(builder.parts());
-    scenario.meshes = builder.meshes().kept();
+    scenario.meshes = sources.meshes.kept() + sources.texts.kept();
 }
 
 void parse(Scenario& scenario, const MeshSource& meshes, const ParameterValues& values, Findings& findings)

@@ -14,11 +14,11 @@ namespace livens::inline io_internal {
 
 namespace {
 
-const Key at{"at", types::vector3, "Position of the joint in the world, where `[[body]]` places the bodies.",
+const Key at{"at", types::point, "Position of the joint in the world, where `[[body]]` places the bodies.",
              "m"};
 const Key axis{"axis", types::vector3,
                "Direction of the joint axis in the world, of any length; goes with `at`."};
-const Key points{"points", types::pair,
+const Key points{"points", types::two_points,
                  "The joint point on each body, in that body's coordinates. Default for a rod: the reference "
                  "points (for the world: its origin).",
                  "m"};
@@ -189,7 +189,7 @@ std::vector<JointKind> kinds_of_curves_and_distances()
                      .needed(),
                  Key{"closed", types::truth, "Whether the curve continues from the last point to the first.",
                      "", "false"}}}),
-           Key{"point", types::vector3, "The point that slides, in coordinates of the second body.", "m",
+           Key{"point", types::point, "The point that slides, in coordinates of the second body.", "m",
                "[0, 0, 0]"}}},
          Location::on_curve,
          make_slot},
@@ -246,7 +246,7 @@ const std::vector<JointKind>& joint_kinds()
 Key frames_key(const std::string& heading, const std::string& doc)
 {
     std::vector<Key> keys{
-        {"point", types::vector3, "Origin of the frame, in body coordinates.", "m", "[0, 0, 0]"}};
+        {"point", types::point, "Origin of the frame, in body coordinates.", "m", "[0, 0, 0]"}};
     for (const Key& key : orientation_keys()) keys.push_back(key);
     return Key{"frames", types::tables, doc}.holding(
         {heading, "Origin and axes of a frame on a body.", keys});

@@ -63,8 +63,7 @@ Load make_bushing(const LoadSources& p)
     Bushing law{read_matrix(p.section, "stiffness"), read_matrix(p.section, "damping"), {}};
     if (const Value* v = p.section.find("preload"))
         for (int i = 0; i < 6; ++i) law.preload[i] = v->numbers[i];
-    std::vector<Matrix34> X;
-    for (const Body& body : p.builder.model().bodies()) X.push_back(body.X);
+    const std::vector<Matrix34> X = p.builder.start_configurations();
     return bushing(p.name, p.first, read_bushing_frame(p, 0), p.second, read_bushing_frame(p, 1), law, X);
 }
 

@@ -14,6 +14,14 @@ namespace {
 
 Key body_key() { return Key{"body", types::text, "The body on which the load acts."}.needed(); }
 
+/// Of what acts at a point.
+Key body_of_point()
+{
+    return Key{"body", types::text,
+               "The body on which the load acts. Not needed with the name of a point in `point`."}
+        .needed_without("point");
+}
+
 Key interpolation_key()
 {
     return choice("interpolation", {"linear", "spline"},
@@ -48,7 +56,7 @@ std::vector<Key> keys_on_body(const std::string& what, std::string_view unit, co
          "Values are interpolated between the times and constant before and after.",
          {times_key(), Key{"values", types::rows, "One value per time.", unit}.needed(),
           interpolation_key()}});
-    return joined({body_key()}, more,
+    return joined({more.empty() || more.front().name != "point" ? body_key() : body_of_point()}, more,
                   std::vector<Key>{
                       Key{"value", types::vector3, "Constant value. Excludes `table` and `expression`.", unit}
                           .or_formulas(formulas_for_value),
@@ -75,10 +83,12 @@ std::vector<Key> keys_of_spring()
           interpolation_key()}});
     return {
         Key{"between", types::names,
-            "Names of the two bodies, first and second; one of them may be `\"world\"`."},
+            "Names of the two bodies, first and second; one of them may be `\"world\"`. Not needed with "
+            "names "
+            "of points in `points`."},
         Key{"joint", types::text, "Joint along whose coordinate the spring acts; instead of `between`."},
         coordinate_key(),
-        Key{"points", types::pair,
+        Key{"points", types::two_points,
             "Attachment point on each body, in that body's coordinates. Default: the reference points (for "
             "the world: its origin).",
             "m"},
@@ -175,7 +185,7 @@ std::vector<Key> keys_of_bushing()
         Key{"between", types::names,
             "Names of the two bodies, first and second; one of them may be `\"world\"`."}
             .needed(),
-        Key{"at", types::vector3,
+        Key{"at", types::point,
             "Initial position in the world; the axes of both frames are then initially the world axes.", "m"},
         frames_key("frame of a bushing",
                    "One frame per body, in that body's coordinates, instead of `at`. Displacements and "
@@ -219,7 +229,7 @@ Load make_attraction(const LoadSources& p)
 
 const std::vector<LoadKind>& load_kinds()
 {
-    const Key point{"point", types::vector3, "Point of application, in body coordinates.", "m", "[0, 0, 0]"};
+    const Key point{"point", types::point, "Point of application, in body coordinates.", "m", "[0, 0, 0]"};
     static const std::vector<LoadKind> all{
         {{"force", "acts at a point of a body", keys_on_body("force", "N", {point})},
          make_force,
@@ -239,7 +249,7 @@ const std::vector<LoadKind>& load_kinds()
          check_bushing},
         {{"drag",
           "resistance (linear + quadratic abs(v)) v against the velocity v of a point relative to the medium",
-          {body_key(), point,
+          {body_of_point(), point,
            Key{"linear", types::number, "Coefficient of the linear part.", "N s/m", "0"}.within(not_negative),
            Key{"quadratic", types::number, "Coefficient of the quadratic part.", "N s^2/m^2", "0"}.within(
                not_negative),
@@ -249,7 +259,7 @@ const std::vector<LoadKind>& load_kinds()
         {{"attraction",
           "gravitational attraction toward a point: mu mass / r^2 at the centre of mass",
           {body_key(),
-           Key{"point", types::vector3, "Position of the attracting point in the world.", "m", "[0, 0, 0]"},
+           Key{"point", types::point, "Position of the attracting point in the world.", "m", "[0, 0, 0]"},
            Key{"mu", types::number, "Gravitational parameter: gravitational constant times attracting mass.",
                "m^3/s^2"}
                .needed()

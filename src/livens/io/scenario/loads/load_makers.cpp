@@ -37,7 +37,7 @@ TimeFunction while_it_acts(const Section& load, TimeFunction value)
 /// The same, if it has a value when the motion begins.
 TimeFunction told(const LoadSources& p, const Expression& expression, TimeFunction value)
 {
-    const Section* time = only_section(p.builder.top(), "time");
+    const Section* time = only_section(p.builder.run(), "time");
     const double start = time == nullptr ? 0 : time->number("start");
     // A formula that has no value at the start would fail in the first element, with less to be said.
     if (std::isfinite(value({start, Side::right}).value)) return value;
@@ -72,9 +72,9 @@ std::vector<TimeFunction> read_values(const LoadSources& p, std::size_t n)
 /// or against time.
 bool ends_at_bends(const Builder& builder)
 {
-    const Section* const method = only_section(builder.top(), "method");
-    const Section* const time = only_section(builder.top(), "time");
-    const Section* const end = only_section(builder.top(), "end");
+    const Section* const method = only_section(builder.run(), "method");
+    const Section* const time = only_section(builder.run(), "time");
+    const Section* const end = only_section(builder.run(), "end");
     const std::string family = method != nullptr ? method->text("family") : "lobatto";
     const bool is_nodal = family == "lobatto" || family == "radau" || family == "auto";
     // Elements are cut at bends while a motion is followed forwards, one element after the other. What is
@@ -197,8 +197,7 @@ Vector3 point_of(const LoadSources& p) { return p.builder.in_axes(p.first, p.sec
 
 std::vector<Matrix34> places(const Builder& builder)
 {
-    std::vector<Matrix34> X;
-    for (const Body& body : builder.model().bodies()) X.push_back(body.X);
+    const std::vector<Matrix34> X = builder.start_configurations();
     return X;
 }
 

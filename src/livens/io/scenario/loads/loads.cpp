@@ -17,7 +17,7 @@ bool check_interval(const Builder& builder, const Section& load, Findings& findi
     if (acts.until <= acts.from)
         return load.error("until", "window-order",
                           "'until' of " + load.label() + " must be later than 'from'");
-    const Section* time = only_section(builder.top(), "time");
+    const Section* time = only_section(builder.run(), "time");
     if (time == nullptr || !time->is_valid()) return true;
     // Only a warning: the interval of a study may be shortened while its loads stay.
     if (acts.from >= time->number("end") || acts.until <= time->number("start"))
@@ -89,7 +89,7 @@ namespace {
 /// What is no number at the start would end the motion before it begins.
 void check_start(Builder& builder)
 {
-    const Section *start = only_section(builder.top(), "start"), *time = only_section(builder.top(), "time");
+    const Section *start = only_section(builder.run(), "start"), *time = only_section(builder.run(), "time");
     if (start != nullptr && start->text("initial") == "project") return;   // from another place
     const Model& model = builder.model();
     const State state = model.start();
@@ -117,6 +117,7 @@ void read_loads(Builder& builder)
     const std::span<const Section> sections = builder.top().sections("load");
     // Known names come first, so that a default does not take one of them.
     std::unordered_set<std::string> taken;
+    for (const Load& load : builder.model().loads()) taken.insert(load.name);   // of what is included
     std::vector<std::string> names(sections.size());
     std::vector<bool> is_good(sections.size());
     for (const bool given : {true, false})

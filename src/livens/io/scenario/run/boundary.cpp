@@ -161,18 +161,19 @@ Table end_table()
             {given("nothing", "As in `[start]`, for the values in `[body.end]`.")}};
 }
 
-void read_boundary(Builder& builder, Conditions& boundary)
+void read_boundary(const Builder& builder, Conditions& boundary)
 {
-    const Section* const start = only_section(builder.top(), "start");
-    const Section* const end = only_section(builder.top(), "end");
+    const Section* const start = only_section(builder.run(), "start");
+    const Section* const end = only_section(builder.run(), "end");
     boundary.at_start = start != nullptr ? start->pick<Known>("given") : Known::state;
     boundary.at_end = end != nullptr ? end->pick<Known>("given") : Known::nothing;
-    if (end != nullptr && !end->is_valid()) return;   // then bodies cannot be judged
-    const bool is_given = boundary.at_end != Known::nothing;
-    if (is_given) {
-        boundary.end.X.resize(builder.model().bodies().size());
-        boundary.end.V.resize(builder.model().bodies().size());
-    }
+    if (boundary.at_end == Known::nothing) return;
+    boundary.end.X.resize(builder.model().bodies().size());
+    boundary.end.V.resize(builder.model().bodies().size());
+}
+
+void read_body_ends(Builder& builder, bool is_given, State& end)
+{
     for (const Section& body : builder.top().sections("body")) {
         if (!is_given) {
             body.refuse({"end"}, "boundary-conditions", "[end] does not say that anything is given there");
@@ -188,7 +189,7 @@ void read_boundary(Builder& builder, Conditions& boundary)
         const Value* name = body.find("name");
         if (name == nullptr || !builder.bodies()[name->text].is_usable) continue;   // told already
         for (const Section& at_end : body.sections("end"))
-            read_pose_of(builder, name->text, at_end, "end", boundary.end);
+            read_pose_of(builder, name->text, at_end, "end", end);
     }
 }
 
