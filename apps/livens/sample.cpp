@@ -99,8 +99,10 @@ void body_members(JsonWriter& json, const Query& q, double t)
 
 const char* source_of(const Query& q, const JointSample& s, double t)
 {
-    if (q.arguments.exact && element_end_at(q.run.motion.mesh, t) < 0) return "solved";
-    return s.is_acceleration_level ? "acceleration level" : "interpolated multipliers";
+    const bool is_end = element_end_at(q.run.motion.mesh, t) >= 0;
+    if (q.arguments.exact && !is_end) return "solved";
+    if (!s.is_acceleration_level) return "interpolated multipliers";
+    return is_end ? "acceleration level" : "polynomial";
 }
 
 void joint_members(JsonWriter& json, const Query& q, double t)

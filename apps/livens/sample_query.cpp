@@ -95,9 +95,10 @@ std::vector<CoordinateAt> coordinates_at(const Query& q, double t)
 {
     std::vector<CoordinateAt> all;
     const bool is_exact = q.arguments.exact;
-    const State state = is_exact ? exact_sample(q.run, q.scenario, t).state : sample_state(q.run.motion, t);
-    const AcceleratedState at = accelerated_at(q.run, q.scenario, t, is_exact);
-    const std::vector<CoordinateValue> values = q.coordinates->at(state, &at);
+    const State given = is_exact ? exact_sample(q.run, q.scenario, t).state : sample_state(q.run.motion, t);
+    const Accelerations accelerations(q.scenario.model, q.run.motion);
+    const AcceleratedState at = accelerations.at(given);
+    const std::vector<CoordinateValue> values = q.coordinates->at(accelerations.on_joints(given), &at);
     for (std::size_t i = 0; i < values.size(); ++i)
         if (q.coordinates->places()[i].joint == q.index) {
             const NamedCoordinate& of = q.coordinates->coordinate(static_cast<int>(i));

@@ -265,8 +265,9 @@ private:
 nb::dict scalars_at(const Result& r, const Times& times, const Times& before)
 {
     OfStates of_states(r, times.size());
+    const Accelerations accelerations(r.scenario->model, r.run.motion);
     at_all(times, [&](double t, std::size_t i) {
-        of_states.add(sample_state(r.run.motion, t), side_of(before, i));
+        of_states.add(accelerations.on_joints(sample_state(r.run.motion, t)), side_of(before, i));
     });
     return of_states.c.take();
 }

@@ -33,7 +33,7 @@ export function build_about(host: HTMLElement, run: Run, program: string, notice
       element(
         "p",
         {},
-        `Velocities are the derivatives of these polynomials. Energies, reactions, coordinates of joints, forces of loads and sensors were taken by livens at the nodes of polynomials in each element, in single precision, and are evaluated between them.${curves}${quality} Reactions inside elements are interpolated multipliers, at their ends of the acceleration level.`,
+        `Velocities are the derivatives of these polynomials. Energies, reactions, coordinates of joints, forces of loads and sensors were taken by livens at the nodes of polynomials in each element, in single precision, and are evaluated between them.${curves}${quality} Reactions follow from the equations of motion, inside elements in the state of the polynomials, put onto the joints.`,
       ),
       ...meta.bodies.flatMap(({ name, thinned }) =>
         thinned

@@ -1113,8 +1113,8 @@ livens_mutant(NAME extremes_are_those_of_samples
               MUST_FAIL Extremes.AreThoseOfTheFormula)
 livens_mutant(NAME accelerations_forget_what_turns
               FILE diagnostics/accelerations.cpp
-              OLD [[A[12 * b + i] + instant.centripetal()[12 * b + i];]]
-              NEW [[-A[12 * b + i] + instant.centripetal()[12 * b + i];]]
+              OLD [[A[12 * b + i] + phase.instant.centripetal()[12 * b + i];]]
+              NEW [[-A[12 * b + i] + phase.instant.centripetal()[12 * b + i];]]
               TESTS_OF unit_spacetime
               MUST_FAIL Accelerations.AreWhatForcesMake)
 

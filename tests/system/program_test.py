@@ -577,7 +577,7 @@ degree = 3
             error = math.dist(s["force"], there["force"]) / info["largest_reaction"]
             self.assertLess(error, 2 * s["estimated_reaction_error"] + 1e-13, (at, how))
             self.assertEqual(s["source"], "solved" if how else
-                             "acceleration level" if at == "0.2" else "interpolated multipliers")
+                             "acceleration level" if at == "0.2" else "polynomial")
         self.assertGreater(told["0.2125", ()], 10 * told["0.2125", ("--exact",)])
         header, row = self.expect(0, "sample", "run.nc", "--body", "brick", "--at", "0.2", "--csv").out.splitlines()
         self.assertEqual(float(dict(zip(header.split(","), row.split(",")))["estimated_position_error [1]"]), told["0.2", ()])
@@ -626,7 +626,7 @@ degree = 6
             upper, lower = self.sample("--joint", "upper", "--at", t), self.sample("--joint", "lower", "--at", t)
             self.assertAlmostEqual(upper["force"][2], (mass + 0.5) * 9.81, delta=1e-9)
             self.assertAlmostEqual(lower["force"][2], 0.5 * 9.81, delta=1e-9)
-            self.assertEqual(upper["source"], "acceleration level" if t == "0.1" else "interpolated multipliers")
+            self.assertEqual(upper["source"], "acceleration level" if t == "0.1" else "polynomial")
             text = self.expect(0, "sample", "run.nc", "--joint", "upper", "--at", t).out
             self.assertNotIn("before", text, "where nothing jumps, one side says all")
 

@@ -110,17 +110,17 @@ std::vector<SeenInstant> end_instants(const Motion& motion)
 
 struct Quantities::Sources {
     Sources(const Model& model, const Motion& motion)
-        : coordinates(model, motion), joints(model, motion), turns(model, motion), sensors(model, motion),
-          accelerations(model, motion)
+        : accelerations(model, motion), coordinates(model, motion), joints(model, motion, accelerations),
+          turns(model, motion), sensors(model, motion)
     {
         for (const Joint& joint : model.joints()) efforts.push_back(drive_effort(joint));
     }
 
+    Accelerations accelerations;
     JointCoordinates coordinates;
-    JointSampler joints;
+    JointSampler joints;   // shares what those find
     LoadTurns turns;
     SensorReadings sensors;
-    Accelerations accelerations;
     std::vector<std::optional<DriveEffort>> efforts;   // of the joints
 };
 
@@ -182,16 +182,27 @@ void Quantities::add(QuantityOf of, int index, const std::string& part, const st
     n_numbers_ += size;
 }
 
-void Quantities::at(const State& state, Side side, std::span<const NamedQuantity> wanted,
+void Quantities::at(const State& given, Side side, std::span<const NamedQuantity> wanted,
                     std::span<double> numbers, std::span<const JointSample> joints) const
 {
     const auto any = [&](auto... kinds) {
         return std::ranges::any_of(wanted, [&](const NamedQuantity& q) { return ((q.of == kinds) || ...); });
     };
+    const Accelerations& equations = sources_->accelerations;
     AcceleratedState accelerated;
     const bool is_accelerated = std::ranges::any_of(
         wanted, [](const NamedQuantity& q) { return q.of != QuantityOf::sensor && needs_accelerations(q); });
-    if (is_accelerated) accelerated = sources_->accelerations.at(state, side);
+    if (is_accelerated) accelerated = equations.at(given, side);
+    if (any(QuantityOf::reaction, QuantityOf::drive) && joints.empty()) {
+        const std::vector<JointSample> found = sources_->joints.at(given);
+        put_joints(equations.on_joints(given), side, wanted, found, numbers);
+    } else if (!joints.empty()) {
+        put_joints(given, side, wanted, joints, numbers);
+    }
+    // Laws of loads may be steep in what the polynomials have a little off.
+    const bool is_forced = is_accelerated || any(QuantityOf::reaction, QuantityOf::drive, QuantityOf::load,
+                                                 QuantityOf::sensor);
+    const State state = is_forced ? equations.on_joints(given) : given;
     if (any(QuantityOf::body)) put_bodies(state, accelerated, wanted, numbers);
     if (any(QuantityOf::coordinate)) {
         const std::vector<CoordinateValue> values =
@@ -204,7 +215,6 @@ void Quantities::at(const State& state, Side side, std::span<const NamedQuantity
                                                                                    : value.value;
         }
     }
-    if (any(QuantityOf::reaction, QuantityOf::drive)) put_joints(state, side, wanted, joints, numbers);
     if (any(QuantityOf::load, QuantityOf::model)) put_loads(state, side, wanted, numbers);
     if (!any(QuantityOf::sensor)) return;
     const std::vector<double> read = sources_->sensors.at(state, side);
@@ -241,8 +251,6 @@ void Quantities::put_bodies(const State& state, const AcceleratedState& accelera
 void Quantities::put_joints(const State& state, Side side, std::span<const NamedQuantity> wanted,
                             std::span<const JointSample> joints, std::span<double> numbers) const
 {
-    std::vector<JointSample> found;
-    if (joints.empty()) joints = found = sources_->joints.at(state);
     constexpr Vector3 none{no_number, no_number, no_number};
     for (const NamedQuantity& q : wanted) {
         if (q.of != QuantityOf::reaction && q.of != QuantityOf::drive) continue;

@@ -74,7 +74,8 @@ public:
     Curves(const Scenario& scenario, const Run& run)
         : model_(scenario.model), motion_(run.motion), quantities_(model_, motion_, run.body_names),
           equations_(of_equations(quantities_, run.body_names.size())), coordinates_(model_, motion_),
-          sensors_(model_, motion_), joints_(model_, motion_), turns_(model_, motion_),
+          sensors_(model_, motion_), accelerations_(model_, motion_),
+          joints_(model_, motion_, accelerations_), turns_(model_, motion_),
           lines_(lines_of_action(model_, motion_)),
           has_reactions_(!sample_joints(model_, motion_, motion_.start()).empty())
     {
@@ -107,28 +108,28 @@ public:
     /// The values of all channels. `is_before`: from the left, where they jump.
     std::vector<double> at(double t, bool is_before) const
     {
-        const State state = sample_state(motion_, t);
+        const State given = sample_state(motion_, t), state = accelerations_.on_joints(given);
         const std::vector<double> angles = turns_.at(state);
         const Instant instant{t, is_before ? Side::left : Side::right};
         std::vector<double> all{kinetic_energy(model_, state.X, state.V),
                                 potential_energy(model_, instant, state.X, state.V, angles)};
-        for (const CoordinateValue& c : coordinates_.at(t)) {
+        for (const CoordinateValue& c : coordinates_.at(state)) {
             all.push_back(c.value);
             all.push_back(c.rate);
         }
-        if (has_reactions_) add_reactions(all, t, is_before);
+        if (has_reactions_) add_reactions(all, given, is_before);
         std::vector<double> numbers(static_cast<std::size_t>(quantities_.n_numbers()));
-        quantities_.at(state, instant.side, equations_, numbers);
+        quantities_.at(given, instant.side, equations_, numbers);
         for (const NamedQuantity& q : equations_)
             for (int i = 0; i < q.size; ++i) all.push_back(numbers[static_cast<std::size_t>(q.first + i)]);
         if (std::ranges::any_of(lines_, is_told)) {
-            const std::vector<Reaction> given = load_reactions(model_, lines_, state, angles, instant.side);
+            const std::vector<Reaction> forces = load_reactions(model_, lines_, state, angles, instant.side);
             for (std::size_t l = 0; l < lines_.size(); ++l) {
-                if (is_told(lines_[l])) all.insert(all.end(), given[l].force.a, given[l].force.a + 3);
-                if (lines_[l].place) all.insert(all.end(), given[l].torque.a, given[l].torque.a + 3);
+                if (is_told(lines_[l])) all.insert(all.end(), forces[l].force.a, forces[l].force.a + 3);
+                if (lines_[l].place) all.insert(all.end(), forces[l].torque.a, forces[l].torque.a + 3);
             }
         }
-        for (const double x : sensors_.at(t)) all.push_back(x);
+        for (const double x : sensors_.at(state, instant.side)) all.push_back(x);
         return all;
     }
 
@@ -146,9 +147,9 @@ private:
             channels_.push_back({kind, index, name + (q.size > 1 ? " " : "") + component_of(q, i), q.unit});
     }
     static bool is_told(const LineOfAction& line) { return line.points[0] || line.place; }
-    void add_reactions(std::vector<double>& all, double t, bool is_before) const
+    void add_reactions(std::vector<double>& all, const State& state, bool is_before) const
     {
-        const std::vector<JointSample> joints = joints_.at(sample_state(motion_, t));
+        const std::vector<JointSample> joints = joints_.at(state);
         for (std::size_t j = 0; j < model_.joints().size(); ++j) {
             const double nan = std::numeric_limits<double>::quiet_NaN();
             Reaction r{{nan, nan, nan}, {nan, nan, nan}};
@@ -163,6 +164,7 @@ private:
     std::vector<NamedQuantity> equations_;
     JointCoordinates coordinates_;
     SensorReadings sensors_;
+    Accelerations accelerations_;
     JointSampler joints_;
     LoadTurns turns_;
     std::vector<LineOfAction> lines_;
