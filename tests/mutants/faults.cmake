@@ -1265,3 +1265,19 @@ livens_mutant(NAME points_of_other_bodies
               NEW [[return true;]]
               TESTS_OF unit_io
               MUST_FAIL NamedPoints.OneMistakeIsOneError)
+
+# Velocities that are stated are moved without having been asked for.
+livens_mutant(NAME stated_velocities_are_moved
+              FILE io/scenario/scenario.cpp
+              OLD [[if (fits && !assembly.states_velocity()) start_as_driven]]
+              NEW [[if (fits) start_as_driven]]
+              TESTS_OF unit_io
+              MUST_FAIL DrivenStart.IsRefusedBesideVelocitiesThatDoNotFit)
+
+# Drives that contradict are told of by the first element alone.
+livens_mutant(NAME drives_that_contradict
+              FILE dynamics/start/consistent_start.cpp
+              OLD [[if (left.relative > start_tolerance) {]]
+              NEW [[if (false && left.relative > start_tolerance) {]]
+              TESTS_OF unit_io
+              MUST_FAIL DrivenStart.HasNoVelocitiesForDrivesThatContradict)

@@ -541,9 +541,10 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
 {
     std::set<std::string_view> others = codes_of_the_core;
     others.insert({"gravity-unit", "format-first", "load-never-acts", "joint-fitted", "expression-kink",
-                   "start-changed", "drive-turns", "end-position", "end-velocity", "point-outside",
-                   "spring-kink", "directors-dependent", "directors-metric", "directors-nearly-orthonormal",
-                   "io-directory", "io-not-found", "io-unreadable"});   // here, of meshes, of hostile files
+                   "start-changed", "start-driven", "drive-turns", "end-position", "end-velocity",
+                   "point-outside", "spring-kink", "directors-dependent", "directors-metric",
+                   "directors-nearly-orthonormal", "io-directory", "io-not-found",
+                   "io-unreadable"});   // here, of meshes, of hostile files
     others.insert({"point-body", "point-unknown", "gravity-differs", "include-file", "include-ignored",
                    "include-limit", "include-path", "include-ring", "include-source"});   // their own tests
     others.insert(codes_of_others.begin(), codes_of_others.end());

@@ -4,6 +4,8 @@
 // loads begin where the start has led the bodies of the whole.
 #include "livens/io/scenario/assembly.h"
 
+#include <algorithm>
+
 #include "livens/base/error.h"
 #include "livens/io/scenario/bodies/bodies.h"
 #include "livens/io/scenario/bodies/named_points.h"
@@ -234,6 +236,12 @@ void Assembly::read_model()
     read_all_loads();
     read_all_sensors(true);
     check_count(builder_.model().loads().size(), "loads");
+}
+
+bool Assembly::states_velocity() const
+{
+    return io_internal::states_velocity(builder_) ||
+           std::ranges::any_of(parts_, [](const auto& part) { return part->states_velocity(); });
 }
 
 void Assembly::read_ends(bool is_given, State& end)

@@ -58,6 +58,8 @@ public:
     /// joints, drives begin where the joints stand then, and loads read sensors, except for sensors that read
     /// loads. Reports all it finds.
     void read_model();
+    /// Whether a velocity at the start is stated anywhere.
+    bool states_velocity() const;
     /// [body.end] of all bodies.
     void read_ends(bool is_given, State& end);
     /// Makes all places known to the outermost builder, for what is found of the whole.

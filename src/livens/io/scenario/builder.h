@@ -51,6 +51,8 @@ public:
     bool is_excused(std::string_view name) const;
     /// Makes `path` known as this place, unless it is known.
     void remember(const std::string& path, const SourceLocation& place) { places_.try_emplace(path, place); }
+    /// Of what the core calls so, for what is read at `context`.
+    SourceLocation find_place(std::string path, const std::string& context) const;
     /// Calls `build` and turns an InputError into a finding at the place it names, else at that of `path`.
     /// False if there was one.
     template <class Build>
@@ -91,7 +93,6 @@ public:
 
 private:
     void report(const Complaint& complaint, const std::string& path);
-    SourceLocation find_place(std::string path, const std::string& context) const;
 
     Section& top_;
     const Section& run_;

@@ -121,7 +121,9 @@ void build(const Node& root, TreePart part, const MeshSource& files, const Param
     });
     // The ends of time are closed once here, for the complaint; the solution takes them from there.
     scenario.prepared = std::make_shared<Prepared>();
+    if (fits && !assembly.states_velocity()) start_as_driven(builder, scenario);
     if (fits) check_ends(builder, scenario.conditions, scenario.options.initial, *scenario.prepared);
+    scenario.resolved = resolved_run(builder, scenario);
     scenario.model = std::move(builder.model());
     scenario.outlines = std::move(builder.outlines());
     scenario.parts = std::move(builder.parts());

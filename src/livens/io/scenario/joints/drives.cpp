@@ -358,7 +358,7 @@ Table drive_table()
         "of a point from its initial position, in m and world axes; for a path give three numbers wherever "
         "one is listed below. The reaction of a drive acts on the second body, and its power enters the "
         "energy balance. Initial velocities must agree with the law, or `[start]` sets `initial = "
-        "\"project\"`.",
+        "\"project\"`; without any initial velocity in the scenario this is done by itself, with a warning.",
         {Key{"name", types::text,
              "Name of the drive; results list drives among the joints. Default: `drive of` and the joint or "
              "body."},

@@ -126,10 +126,13 @@ Table start_table()
         "needed in any case, since joints placed by `at` refer to them.",
         {given("state", "state: positions and velocities; positions, or momenta: only these; nothing: "
                         "neither. The rest is a first guess."),
-         choice<StartPolicy>("initial",
-                             "Treatment of initial values that violate a joint. check: an error that names "
-                             "the joint; project: positions and velocities are moved to the nearest "
-                             "admissible ones, where distances are weighted by mass (the mass metric)."),
+         choice<StartPolicy>(
+             "initial",
+             "Treatment of initial values that violate a joint. check: an error that names "
+             "the joint; project: positions and velocities are moved to the nearest "
+             "admissible ones, where distances are weighted by mass (the mass metric). Default: check; "
+             "velocities alone are projected, with a warning, if the scenario gives none "
+             "and a drive moves at the initial time."),
          choice("joints", {"fixed", "fit"},
                 "Treatment of rounded joint dimensions. fixed: joints are used as given; fit: points and "
                 "axes on the second body of a joint are moved by the least amount that closes it where the "
@@ -193,6 +196,36 @@ void read_body_ends(Builder& builder, bool is_given, State& end)
     }
 }
 
+namespace {
+
+/// Joints that have let go by then, or begin later, need not be closed at this end.
+Model acting_then(const Model& model, const State& state)
+{
+    return model.has_events() ? acting_at(model, state.t).model : model;
+}
+
+}   // namespace
+
+void start_as_driven(Builder& builder, Scenario& scenario)
+{
+    const Section* const start = only_section(builder.run(), "start");
+    if (!builder.model().has_drives() || scenario.conditions.at_start != Known::state) return;
+    if (start != nullptr && start->has("initial")) return;
+    const State& at_rest = scenario.conditions.start;
+    const Model model = acting_then(builder.model(), at_rest);
+    const TriedStart tried = scenario.prepared->try_close(model, at_rest, StartPolicy::check);
+    if (tried.closed || tried.why.code != "start-velocity") return;
+    scenario.options.initial = StartPolicy::project;
+    if (!scenario.prepared->try_close(model, at_rest, StartPolicy::project).closed) return;
+    const std::string name = tried.why.path.substr(tried.why.path.find('['));   // "[motor]"
+    builder.findings().warning(
+        builder.find_place(tried.why.path, ""), "start-driven",
+        "no initial velocities are given, and the drive '" + name.substr(1, name.size() - 2) +
+            "' is moving at the start: the bodies start with velocities that fit it",
+        {"of all that fit, those of least kinetic energy, as initial = \"project\" in [start] takes them",
+         "write initial = \"project\", or give velocities (\"rate\" of a joint moves all that hangs on it)"});
+}
+
 void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy, Prepared& prepared)
 {
     const auto close = [&](State state, Known given) {
@@ -200,9 +233,7 @@ void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy
         // Velocities that are not stated are guesses of Newton's iteration, which joints must not refuse.
         if (given == Known::positions)
             for (Matrix34& V : state.V) V = {};   // a guess, which need not fit
-        // Joints that have let go by then, or begin later, need not be closed at this end.
-        const Model model =
-            builder.model().has_events() ? acting_at(builder.model(), state.t).model : builder.model();
+        const Model model = acting_then(builder.model(), state);
         const ConsistentStart closed = prepared.close(model, state, policy);
         // A state at a singular position is judged besides (theory.md, Singular positions).
         if (given == Known::state) refuse_singular_start(model, closed);

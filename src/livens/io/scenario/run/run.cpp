@@ -8,10 +8,9 @@
 
 namespace livens::inline io_internal {
 
-namespace {
-
-std::string resolve(const Builder& builder, const Section& time, const Scenario& scenario)
+std::string resolved_run(const Builder& builder, const Scenario& scenario)
 {
+    const Section& time = *only_section(builder.run(), "time");
     const Vector3 gravity = builder.run().vector("gravity");
     const SolveOptions& options = scenario.options;
     JsonWriter json;
@@ -46,6 +45,8 @@ std::string resolve(const Builder& builder, const Section& time, const Scenario&
     json.key("end").begin_object().member("given", word_of(scenario.conditions.at_end)).end_object();
     return json.end_object().text();
 }
+
+namespace {
 
 /// What is not stated follows from the accuracy.
 void leave_open(Method& method, bool has_family, bool has_degree)
@@ -96,9 +97,7 @@ void read_run(Builder& builder, Scenario& scenario)
     if (time != nullptr) scenario.options.end_at_bends = time->text("breaks") != "ignore";
     read_boundary(builder, scenario.conditions);
     remember_defaults(builder);
-    if (time == nullptr) return;
-    if (!read_time(builder, *time, method, scenario)) return;
-    scenario.resolved = resolve(builder, *time, scenario);
+    if (time != nullptr) read_time(builder, *time, method, scenario);
 }
 
 }   // namespace livens::inline io_internal

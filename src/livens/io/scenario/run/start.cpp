@@ -92,6 +92,24 @@ StatedStart stated_start(Builder& builder)
     return stated;
 }
 
+bool states_velocity(const Builder& builder)
+{
+    const auto moves = [](const Section& section) {
+        for (const char* key :
+             {"velocity", "angular_velocity", "angular_velocity_body", "director_rates", "rate"})
+            if (section.has(key)) return true;
+        return false;
+    };
+    const Section& top = builder.top();
+    const Section* start = only_section(builder.run(), "start");
+    return std::ranges::any_of(top.sections("joint"), moves) ||
+           std::ranges::any_of(top.sections("body"),
+                               [&](const Section& body) {
+                                   return moves(body) || std::ranges::any_of(body.sections("start"), moves);
+                               }) ||
+           (start != nullptr && std::ranges::any_of(start->sections("coordinates"), moves));
+}
+
 void move_bodies(Builder& builder, const StatedStart& stated)
 {
     if (builder.findings().n_errors() > 0) return;
