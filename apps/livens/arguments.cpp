@@ -200,16 +200,16 @@ void add_run_commands(CLI::App& app, Arguments& a)
     info.add_option("RUN", *run, "result file")->required()->type_name("RUN.nc");
     add_common(info, a);
     const auto given = arguments_of<SampleArguments>();
-    CLI::App& sample =
-        add_command(app, a, "sample", "Print a body, a joint or a sensor of a run at given times",
-                    [given](const Common& common) { return sample_command(*given, common); });
+    CLI::App& sample = add_command(
+        app, a, "sample", "Print a body, a joint, a sensor, a point or a load of a run at given times",
+        [given](const Common& common) { return sample_command(*given, common); });
     sample.add_option("RUN", given->run, "result file")->required()->type_name("RUN.nc");
     auto* body = sample.add_option("--body", given->body, "print pose, velocity and momentum of this body")
                      ->type_name("BODY");
     auto* joint = sample.add_option("--joint", given->joint, "print reactions and coordinates of this joint")
                       ->type_name("JOINT");
     joint->excludes(body);
-    sample.add_option("--sensor", given->sensor, "print readings of this sensor")
+    sample.add_option("--sensor", given->sensor, "print readings of this sensor, point or load")
         ->type_name("SENSOR")
         ->excludes(body)
         ->excludes(joint);

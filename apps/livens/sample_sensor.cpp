@@ -13,6 +13,7 @@
 #include "livens/diagnostics/sample.h"
 #include "livens/io/json.h"
 #include "livens/io/shown_unit.h"
+#include "sample_query.h"
 
 namespace livens::program {
 
@@ -24,30 +25,14 @@ struct Found {
     std::size_t first = 0;
 };
 
-/// The model, with a sensor at the point of that name, if there is one.
-Model with_point(const Model& model, const std::string& name)
-{
-    Model all = model;
-    const int point = model.find_point(name);
-    if (point < 0 || model.points()[static_cast<std::size_t>(point)].body == world) return all;
-    const NamedPoint& at = model.points()[static_cast<std::size_t>(point)];
-    all.add_sensor(point_sensor(name, at.body, at.position, model.start().X));
-    return all;
-}
-
 Found find_sensor(const Model& model, const std::string& name)
 {
     Found found;
-    std::string known;
     for (const Sensor& sensor : model.sensors()) {
         if (sensor.name == name) return found.sensor = &sensor, found;
-        known += (known.empty() ? "'" : ", '") + sensor.name + "'";
         found.first += sensor.components.size();
     }
-    for (const NamedPoint& point : model.points())
-        if (point.body != world) known += (known.empty() ? "'" : ", '") + point.name + "'";
-    throw failure(exit_usage,
-                  fmt::format("the run has no sensor '{}'; it has {}", name, known.empty() ? "none" : known));
+    throw no_such("sensor", name, model);
 }
 
 /// In the units that are wished.
@@ -110,7 +95,7 @@ std::string text_of(const Sensor& sensor, const std::vector<ShownUnit>& units, d
 std::string sample_sensor(const SampleArguments& arguments, const Common& common, const Run& run,
                           const Scenario& scenario, const std::vector<double>& times)
 {
-    const Model model = with_point(scenario.model, arguments.sensor);
+    const Model model = with_all_readings(scenario.model);
     const Found found = find_sensor(model, arguments.sensor);
     const SensorReadings readings(model, run.motion);
     std::vector<std::vector<double>> rows;

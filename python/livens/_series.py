@@ -271,6 +271,10 @@ class Series:
             if attribute not in UNITS or not hasattr(type(self), attribute):
                 raise unknown_name("series", what, [n for n in UNITS if hasattr(type(self), n)])
             return getattr(self, attribute), UNITS[attribute]
+        for way in ("force", "torque"):   # "pin.force_in.crank": in axes of a body
+            joint, _, body = what.partition(f".{way}_in.")
+            if body and joint in self.joints and body in self.bodies:
+                return getattr(self.joints[joint], way + "_in")(body), UNITS[way]
         part = self[name]
         try:
             return getattr(part, attribute), part.unit(attribute)

@@ -67,8 +67,8 @@ private:
     std::map<std::string, Column> columns_;
 };
 
-/// From which side an instant is seen: those of `before` that are not zero are seen from the left; of a single
-/// instant or where there is no list, from the right.
+/// From which side an instant is seen: those of `before` that are not zero are seen from the left; of a
+/// single instant or where there is no list, from the right.
 Side side_of(const Times& before, std::size_t i)
 {
     return before.size() > i && before.data()[i] != 0 ? Side::left : Side::right;
@@ -164,7 +164,8 @@ nb::dict bodies_at(const Result& r, const Times& times)
     const Model& model = r.scenario->model;
     std::vector<Vector4> previous = upright(model);
     declare_bodies(c, previous.size());
-    at_all(times, [&](double t, std::size_t) { add_bodies(c, sample_bodies(model, r.run.motion, t), previous); });
+    at_all(times,
+           [&](double t, std::size_t) { add_bodies(c, sample_bodies(model, r.run.motion, t), previous); });
     return c.take();
 }
 
@@ -274,7 +275,7 @@ nb::dict scalars_at(const Result& r, const Times& times, const Times& before)
 
 bool is_acceleration(const NamedQuantity& q)
 {
-    return q.of != QuantityOf::sensor && q.what.ends_with("acceleration");
+    return (q.of == QuantityOf::body || q.of == QuantityOf::coordinate) && q.what.ends_with("acceleration");
 }
 
 /// Accelerations of bodies and coordinates, and what drives do.

@@ -1281,3 +1281,11 @@ livens_mutant(NAME drives_that_contradict
               NEW [[if (false && left.relative > start_tolerance) {]]
               TESTS_OF unit_io
               MUST_FAIL DrivenStart.HasNoVelocitiesForDrivesThatContradict)
+
+# Reactions in the axes of a body, turned the other way.
+livens_mutant(NAME reactions_turned_back
+              FILE diagnostics/quantities.cpp
+              OLD [[return transpose(project_directors(directors(X))) * v;]]
+              NEW [[return project_directors(directors(X)) * v;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Quantities.OfPointsAndInAxesOfBodiesAreThoseOfTheWorldTurned)

@@ -689,6 +689,40 @@ degree = 6
         self.assertEqual(peaks["unit"], "deg")
         self.assertAlmostEqual(peaks["peak"]["value"] * degree, plain["peak"]["value"], delta=1e-12)
 
+    def test_names_that_are_asked_for(self):
+        text = HINGED.replace("[time]", '[[point]]\nname = "tip"\nbody = "brick"\nposition = [1, 0, 0]\n[[point]]\nname = "hook"\nbody = "world"\n'
+                              'position = [0, 0, 3]\n[[load]]\nname = "push"\ntype = "spring"\npoints = ["hook", "tip"]\n'
+                              'stiffness = 3\nfree_length = 1\n[[sensor]]\nname = "eye"\ntype = "point"\nbody = "brick"\n[time]')
+        self.solve(text)
+        joint = self.sample("--joint", "hinge", "--at", "0.1")
+        directors = self.sample("--body", "brick", "--at", "0.1")["directors"]
+        for what in ("force", "torque"):
+            self.assertEqual(list(joint[what + "_in"]), ["brick"])
+            for d, along in zip(directors, joint[what + "_in"]["brick"]):
+                self.assertAlmostEqual(sum(x * y for x, y in zip(d, joint[what])), along, delta=1e-9)
+        self.assertGreater(math.dist(joint["force_in"]["brick"], joint["force"]), 1e-3, "the control")
+        peaks = json.loads(self.expect(0, "peaks", "run.nc", "hinge.force_in.brick", "hinge.force", "--json").out)["peaks"]
+        self.assertAlmostEqual(peaks[0]["peak"]["value"], peaks[1]["peak"]["value"], delta=1e-9 * peaks[1]["peak"]["value"])
+        self.assertEqual(self.expect(0, "peaks", "run.nc").out.count("force_in"), 0)
+        self.expect(0, "export", "run.nc", "--csv", "all.csv")
+        self.assertNotIn("force_in", (self.folder / "all.csv").read_text())
+        self.expect(0, "peaks", "run.nc", "tip.acceleration", "tip.velocity.x", "hook.position.z", "push.force")
+        load = self.sample("--sensor", "push", "--at", "0.1")
+        self.assertEqual((load["type"], load["components"]), ("load", ["force", "length", "power"]))
+        self.assertEqual(self.sample("--sensor", "tip", "--at", "0.1")["type"], "point")
+        self.assertEqual(self.expect(0, "completion", "--sensors", "run.nc").out.split(), ["eye", "tip", "push"])
+        # Of a part that there is, what it has; of another kind, how it is asked for.
+        for arguments, words in ((("peaks", "run.nc", "hinge.force_in.brik"), "did you mean 'hinge.force_in.brick'?"),
+                                 (("peaks", "run.nc", "hinge.stress"), "there are 'hinge.angle', "),
+                                 (("peaks", "run.nc", "eye.acceleration"), "there are 'eye.x', "),
+                                 (("peaks", "run.nc", "nothing.at.all"), "parts known here: brick, "),
+                                 (("sample", "run.nc", "--sensor", "brick", "--at", "0"), "it is asked for by --body"),
+                                 (("sample", "run.nc", "--sensor", "hook", "--at", "0"), "a point of the world"),
+                                 (("sample", "run.nc", "--sensor", "hinge", "--at", "0"), "it is asked for by --joint"),
+                                 (("sample", "run.nc", "--body", "push", "--at", "0"), "it is asked for by --sensor"),
+                                 (("sample", "run.nc", "--joint", "nix", "--at", "0"), "it has 'hinge'")):
+            self.assertIn(words, self.expect(2, *arguments).err, arguments)
+
     def test_peaks_beside_jumps(self):
         """All is driven, and a force turns round with the motion: elements beside that are nanoseconds long, and exact
         solutions begin within rounding of it. The drive bears 500 N and m a at most, just behind the jump."""

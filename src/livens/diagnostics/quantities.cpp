@@ -46,7 +46,19 @@ constexpr BodyQuantity body_quantities[] = {{"position", "m", 3},
                                             {"linear_momentum", "kg m/s", 3},
                                             {"angular_momentum", "kg m^2/s", 3}};
 
+/// What a body has at each of its points.
+bool is_of_points(std::string_view what)
+{
+    return what == "position" || what == "velocity" || what == "acceleration";
+}
+
 bool needs_accelerations(const NamedQuantity& q) { return q.what.ends_with("acceleration"); }
+
+/// Along the axes of a body.
+Vector3 in_axes(const Matrix34& X, const Vector3& v)
+{
+    return transpose(project_directors(directors(X))) * v;
+}
 
 /// The motion of a body's material points as those of the joint point.
 Vector3 point_velocity(const Matrix34& X, const Matrix34& V, const Vector3& place)
@@ -132,6 +144,7 @@ Quantities::Quantities(const Model& model, const Motion& motion, const std::vect
     for (std::size_t b = 0; b < body_names.size(); ++b)
         for (const BodyQuantity& q : body_quantities)
             add(QuantityOf::body, static_cast<int>(b), body_names[b], q.what, q.unit, q.size);
+    add_points();
     const std::vector<JointCoordinates::Place>& places = sources_->coordinates.places();
     for (std::size_t i = 0; i < places.size(); ++i) {
         const NamedCoordinate& q = sources_->coordinates.coordinate(static_cast<int>(i));
@@ -146,13 +159,39 @@ Quantities::Quantities(const Model& model, const Motion& motion, const std::vect
     add_parts();
 }
 
+void Quantities::add_points()
+{
+    for (int p = 0; p < std::ssize(model_.points()); ++p)
+        for (const BodyQuantity& q : body_quantities) {
+            if (!is_of_points(q.what)) continue;
+            add(QuantityOf::point, p, model_.points()[p].name, q.what, q.unit, q.size);
+            all_.back().is_on_request = true;
+        }
+}
+
+/// In axes of the world, and of the bodies that have some.
+void Quantities::add_reactions(int j)
+{
+    const Joint& joint = model_.joints()[j];
+    add(QuantityOf::reaction, j, joint.name, "force", "N", 3);
+    add(QuantityOf::reaction, j, joint.name, "torque", "N m", 3);
+    for (const int body : {joint.first, joint.second}) {
+        if (body == world || model_.bodies()[body].is_point) continue;
+        for (const char* what : {"force", "torque"}) {
+            const std::string name = std::string(what) + "_in." + model_.body_name(body);
+            add(QuantityOf::reaction, j, joint.name, name, *what == 'f' ? "N" : "N m", 3);
+            all_.back().is_on_request = true;
+            all_.back().axes = body;
+        }
+    }
+}
+
 /// Of joints, drives, loads and sensors.
 void Quantities::add_parts()
 {
     for (int j = 0; has_reactions_ && j < std::ssize(model_.joints()); ++j) {
+        add_reactions(j);
         const Joint& joint = model_.joints()[j];
-        add(QuantityOf::reaction, j, joint.name, "force", "N", 3);
-        add(QuantityOf::reaction, j, joint.name, "torque", "N m", 3);
         if (joint.type != "drive") continue;
         if (const auto& effort = sources_->efforts[static_cast<std::size_t>(j)]) {
             const bool is_angle = effort->coordinate.is_angle();
@@ -204,6 +243,7 @@ void Quantities::at(const State& given, Side side, std::span<const NamedQuantity
                                                  QuantityOf::sensor);
     const State state = is_forced ? equations.on_joints(given) : given;
     if (any(QuantityOf::body)) put_bodies(state, accelerated, wanted, numbers);
+    if (any(QuantityOf::point)) put_points(state, accelerated, wanted, numbers);
     if (any(QuantityOf::coordinate)) {
         const std::vector<CoordinateValue> values =
             sources_->coordinates.at(state, is_accelerated ? &accelerated : nullptr);
@@ -248,6 +288,26 @@ void Quantities::put_bodies(const State& state, const AcceleratedState& accelera
     }
 }
 
+void Quantities::put_points(const State& state, const AcceleratedState& accelerated,
+                            std::span<const NamedQuantity> wanted, std::span<double> numbers) const
+{
+    const std::vector<BodySample> samples = sample_bodies(model_, motion_, state);
+    for (const NamedQuantity& q : wanted) {
+        if (q.of != QuantityOf::point) continue;
+        const NamedPoint& at = model_.points()[q.index];
+        if (at.body == world) {
+            put(numbers, q, q.what == "position" ? at.position : Vector3{});
+            continue;
+        }
+        const BodySample& s = samples[static_cast<std::size_t>(at.body)];
+        const Vector3 arm = project_directors(directors(state.X[at.body])) * at.position;
+        if (q.what == "position") put(numbers, q, s.position + arm);
+        if (q.what == "velocity") put(numbers, q, s.velocity + cross(s.angular_velocity, arm));
+        if (q.what == "acceleration")
+            put(numbers, q, accelerated.A[static_cast<std::size_t>(at.body)] * point(at.position));
+    }
+}
+
 void Quantities::put_joints(const State& state, Side side, std::span<const NamedQuantity> wanted,
                             std::span<const JointSample> joints, std::span<double> numbers) const
 {
@@ -260,8 +320,10 @@ void Quantities::put_joints(const State& state, Side side, std::span<const Named
                            : side == Side::left ? joints[j].left
                                                 : joints[j].right;
         const Joint& joint = model_.joints()[q.index];
-        if (q.what == "force") put(numbers, q, r.force);
-        if (q.what == "torque") put(numbers, q, r.torque);
+        if (q.of == QuantityOf::reaction) {
+            const Vector3& v = q.what.starts_with("force") ? r.force : r.torque;
+            put(numbers, q, q.axes == world ? v : in_axes(state.X[q.axes], v));
+        }
         if (q.of != QuantityOf::drive) continue;
         numbers[static_cast<std::size_t>(q.first)] = q.what == "power"
                                                          ? joint_power(joint, state.X, state.V, r)
