@@ -11,7 +11,7 @@ namespace livens {
 
 namespace {
 
-constexpr double closed = 1e-12;   // |Phi| / scale
+constexpr double closed_enough = 1e-12;   // |Phi| / scale
 
 /// The last one, if it is of these rows.
 std::shared_ptr<const RowPattern> pattern_of(const ModelTables& tables, const std::vector<int>& rows)
@@ -238,7 +238,7 @@ double InstantSystem::move_towards_rows(InstantState& state)
         row_rates_[c] = -phi;
         open = std::max(open, std::abs(phi) / tables_.rows[rows[c]].row->scale);
     }
-    if (open <= closed) return open;
+    if (open <= closed_enough) return open;
     double *y = a_.data(), *rest = b_.data();
     std::fill_n(y, tables_.n_twists, 0.0);
     if (state.held.by_joints) {
@@ -268,7 +268,7 @@ bool InstantSystem::close(InstantState& state)
     constexpr int most = 6;   // steps, of which each squares what is open
     for (int i = 0; i < most; ++i) {
         const double open = move_towards_rows(state);
-        if (open <= closed) return true;
+        if (open <= closed_enough) return true;
         if (!std::isfinite(open) || !prepare(state, rows)) break;
     }
     state.X = given;
