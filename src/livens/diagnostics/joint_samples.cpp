@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reactions of joints at any instant, on both sides of it: of the acceleration level (theory.md, "Element ends",
-// "Accelerations"), interpolated where that cannot be had; the least where joints are redundant.
+// Reactions of joints at any instant, on both sides of it: of the acceleration level (theory.md, "Element
+// ends", "Accelerations"), interpolated where that cannot be had; the least where joints are redundant.
 #include <algorithm>
 #include <cmath>
 #include <limits>

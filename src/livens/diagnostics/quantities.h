@@ -65,8 +65,9 @@ public:
 
     /// The numbers of `wanted` in a state at an instant of the motion, at their places among all; what else
     /// is in `numbers` stays as it is. Between element ends, where forces are among them, all are those of
-    /// the nearest state that joints and drives allow, see Accelerations::on_joints(). nan: what a point mass has not, and where joints lose rank. `joints`
-    /// are those of sample_exactly(), empty: the motion is asked.
+    /// the nearest state that joints and drives allow, see Accelerations::on_joints(). nan: what a point mass
+    /// has not, and where joints lose rank. `joints` are those of sample_exactly(), empty: the motion is
+    /// asked.
     void at(const State& given, Side side, std::span<const NamedQuantity> wanted, std::span<double> numbers,
             std::span<const JointSample> joints = {}) const;
 

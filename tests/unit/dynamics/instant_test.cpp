@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "livens/dynamics/start/consistent_start.h"
 #include "livens/dynamics/rows/twist.h"
+#include "livens/dynamics/start/consistent_start.h"
 #include "workshop.h"
 
 namespace livens {
@@ -202,8 +202,9 @@ Model driven_crank(double stroke = 0.2)
     JointFrame pin;
     pin.point_first = {1, 0, 0};
     model.add_joint(spherical("pin", crank, link, pin));
-    model.add_joint(only_rows("ram", {driven_distance_row(world, point({1.5, 1, 0.5}), link, point({1, 0, 0}),
-                                                          swing(1.2 + 0.2 * std::sin(3 * now.t), stroke, 3, -3 * now.t), 1)}));
+    const TimeFunction reach = swing(1.2 + 0.2 * std::sin(3 * now.t), stroke, 3, -3 * now.t);
+    model.add_joint(only_rows(
+        "ram", {driven_distance_row(world, point({1.5, 1, 0.5}), link, point({1, 0, 0}), reach, 1)}));
     return model;
 }
 

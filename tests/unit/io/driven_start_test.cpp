@@ -157,5 +157,65 @@ TEST(DrivenStart, HasNoVelocitiesForDrivesThatContradict)
     EXPECT_TRUE(read(replaced(two, "\"30 rpm\"", "\"60 rpm\"")).scenario.has_value());
 }
 
+// A base that floats, and a leg on a hinge whose rate is given.
+const std::string floating = R"(format = 1
+
+[[body]]
+name = "base"
+mass = 10
+inertia = [0.1, 0.2, 0.2]
+
+[[body]]
+name = "leg"
+mass = 1
+inertia = [0.01, 0.01, 0.01]
+position = [0.2, 0, -0.15]
+
+[[joint]]
+name = "hip"
+type = "revolute"
+between = ["base", "leg"]
+at = [0.2, 0, 0]
+axis = [0, 1, 0]
+rate = 1
+
+[time]
+end = 0.1
+)";
+
+TEST(StatedVelocities, AreKeptWhereARateMovesTheStart)
+{
+    const std::string at_rest =
+        replaced(floating, "mass = 10\n", "mass = 10\nvelocity = [0, 0, 0]\nangular_velocity = [0, 0, 0]\n");
+    const ScenarioResult kept = read(at_rest);
+    ASSERT_TRUE(kept.scenario.has_value()) << shown(kept);
+    EXPECT_TRUE(kept.diagnostics.empty()) << shown(kept);
+    EXPECT_LT(norm(kept.scenario->model.bodies()[0].V), 1e-15);
+    const Body& leg = kept.scenario->model.bodies()[1];
+    EXPECT_LT(norm(angular_velocity(leg.X, leg.V) - Vector3{0, 1, 0}), 1e-14);
+    // Negative control: nobody says that it is at rest.
+    const ScenarioResult free = read(floating);
+    EXPECT_TRUE(free.diagnostics.empty()) << shown(free);
+    EXPECT_GT(norm(free.scenario->model.bodies()[0].V), 0.1);
+    // [body.start] says it as well.
+    const ScenarioResult later = read(replaced(floating, "mass = 10\ninertia = [0.1, 0.2, 0.2]\n",
+                                               "mass = 10\ninertia = [0.1, 0.2, 0.2]\n[body.start]\nvelocity "
+                                               "= [1, 0, 0]\nangular_velocity = [0, 0, 0]\n"));
+    ASSERT_TRUE(later.scenario.has_value()) << shown(later);
+    EXPECT_LT(norm(later.scenario->model.bodies()[0].V.column(0) - Vector3{1, 0, 0}), 1e-14);
+}
+
+TEST(StatedVelocities, ThatDoNotFitAreToldAlsoWhereTheyAreZero)
+{
+    const std::string both = replaced(
+        replaced(floating, "mass = 10\n", "mass = 10\nvelocity = [0, 0, 0]\nangular_velocity = [0, 0, 0]\n"),
+        "mass = 1\n", "mass = 1\nvelocity = [0, 0, 0]\nangular_velocity = [0, 0, 0]\n");
+    const ScenarioResult result = read(both);
+    EXPECT_EQ(result.diagnostics.size(), 2u) << shown(result);
+    const Diagnostic* d = find(result, "start-changed");
+    ASSERT_NE(d, nullptr) << shown(result);
+    EXPECT_NE(d->message.find("'base'"), std::string::npos);
+}
+
 }   // namespace
 }   // namespace livens

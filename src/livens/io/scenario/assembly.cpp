@@ -125,6 +125,10 @@ StatedStart Assembly::all_stated()
             rate.path.insert(rate.path.find('[') + 1, part->to_.prefix);
             all.rates.push_back(std::move(rate));
         }
+        for (StatedVelocity& one : of_part.velocities) {
+            one.body = part->to_.body(one.body);
+            all.velocities.push_back(one);
+        }
         for (std::size_t b = 0; of_part.is_other && b < of_part.state.X.size(); ++b) {
             const std::size_t at = static_cast<std::size_t>(part->to_.first_body) + b;
             all.state.X[at] = part->to_.by.of_configuration(of_part.state.X[b]);

@@ -19,9 +19,10 @@ void read_pose_of(Builder& builder, const std::string& name, const Section& pose
 
 /// What bodies and joints say of the start.
 struct StatedStart {
-    std::vector<StartCoordinate> rates;   ///< of joints
-    State state;                          ///< bodies where [body.start] has them
-    bool is_other = false;                ///< it has some
+    std::vector<StartCoordinate> rates;         ///< of joints
+    State state;                                ///< bodies where [body.start] has them
+    bool is_other = false;                      ///< it has some
+    std::vector<StatedVelocity> velocities{};   ///< of bodies, be they zero
 };
 /// Where nothing was wrong so far.
 StatedStart stated_start(Builder& builder);

@@ -75,6 +75,16 @@ void restate_bodies(Builder& builder, const State& state, std::vector<StartCoord
 
 }   // namespace
 
+namespace {
+
+/// A section of a body that gives its angular velocity.
+bool turns(const Section& body)
+{
+    return body.has("angular_velocity") || body.has("angular_velocity_body") || body.has("director_rates");
+}
+
+}   // namespace
+
 StatedStart stated_start(Builder& builder)
 {
     StatedStart stated{{}, builder.model().start()};
@@ -84,21 +94,23 @@ StatedStart stated_start(Builder& builder)
         stated.rates.push_back(
             {builder.model().find_joint(name), 0, {}, joint.number("rate"), "joint[" + name + "].rate"});
     }
-    for (const Section& body : builder.top().sections("body"))
+    for (const Section& body : builder.top().sections("body")) {
+        StatedVelocity said{builder.model().find_body(body.text("name")), body.has("velocity"), turns(body)};
         for (const Section& start : body.sections("start")) {
             read_pose_of(builder, body.text("name"), start, "start", stated.state);
             stated.is_other = true;
+            said.of_place |= start.has("velocity");
+            said.of_turn |= turns(start);
         }
+        if (said.of_place || said.of_turn) stated.velocities.push_back(said);
+    }
     return stated;
 }
 
 bool states_velocity(const Builder& builder)
 {
     const auto moves = [](const Section& section) {
-        for (const char* key :
-             {"velocity", "angular_velocity", "angular_velocity_body", "director_rates", "rate"})
-            if (section.has(key)) return true;
-        return false;
+        return section.has("velocity") || section.has("rate") || turns(section);
     };
     const Section& top = builder.top();
     const Section* start = only_section(builder.run(), "start");
@@ -123,7 +135,7 @@ void move_bodies(Builder& builder, const StatedStart& stated)
     builder.guard("start", [&] {
         MovedStart moved =
             move_start(builder.model(), wanted, projects ? StartPolicy::project : StartPolicy::check,
-                       time == nullptr ? 0 : time->number("start"));
+                       time == nullptr ? 0 : time->number("start"), stated.velocities);
         builder.model() = std::move(moved.model);
         for (const std::string& change : moved.changed)
             builder.findings().warning(start == nullptr ? SourceLocation{} : start->place(), "start-changed",
