@@ -45,9 +45,12 @@ Key frames_of_joint()
 {
     return frames_key(
         "frame of a joint",
-        "One frame per body, in that body's coordinates, instead of all other placement keys. The third axis "
-        "of each frame is the joint axis. The first axes are aligned by weld, prismatic and "
-        "constant_velocity, and by a screw at zero displacement; other joints ignore them.");
+        "Two frames that the joint keeps together, one on each body and in that body's coordinates. They say "
+        "all about the placement: `at`, `axis`, `points` and `axes` are left out. The third axis of a frame "
+        "is "
+        "the joint axis. The first axis counts where a joint prevents the turn about the third: weld, "
+        "prismatic, constant_velocity, and screw at zero displacement align the first axes of both frames; "
+        "other types ignore them.");
 }
 
 /// A kind of the library with a maker that takes a frame.

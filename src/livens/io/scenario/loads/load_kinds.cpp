@@ -188,8 +188,9 @@ std::vector<Key> keys_of_bushing()
         Key{"at", types::point,
             "Initial position in the world; the axes of both frames are then initially the world axes.", "m"},
         frames_key("frame of a bushing",
-                   "One frame per body, in that body's coordinates, instead of `at`. Displacements and "
-                   "rotations are those of the second frame relative to the first, in axes of the first."),
+                   "Two frames between which the bushing acts, one on each body and in that body's "
+                   "coordinates, instead of `at`. Displacements and rotations are those of the second frame "
+                   "relative to the first, in axes of the first."),
         Key{"stiffness", types::list, "Force and torque " + of_u}
             .each_in(units_of_bushing("N/m", "N/rad", "N m/m", "N m/rad"))
             .needed(),
