@@ -22,9 +22,11 @@ export function build_about(host: HTMLElement, run: Run, program: string, notice
   const { meta } = run,
     card = (title: string, ...children: (Node | string)[]) =>
       element("section", { class: "card" }, element("h2", {}, title), ...children);
-  const curves = meta.curves.every
-    ? ""
-    : " The run has more elements than are shown in plots of the program\u2019s series: between every few elements they are straight lines.";
+  const { every, loss = 0 } = meta.curves;
+  const curves =
+    every && loss === 0
+      ? ""
+      : ` The run has more elements than these series could have instants for: ${every ? "each element has fewer nodes" : "between every few elements they are straight lines"}, off by up to ${rough(loss)} of what they reach where it was looked at.`;
   const quality = meta.quality.every ? "" : " Series of quality show the largest of neighbouring elements.";
   host.append(
     card(

@@ -1289,3 +1289,11 @@ livens_mutant(NAME reactions_turned_back
               NEW [[return project_directors(directors(X)) * v;]]
               TESTS_OF unit_spacetime
               MUST_FAIL Quantities.OfPointsAndInAxesOfBodiesAreThoseOfTheWorldTurned)
+
+# What series of a page lose between their instants is told as nothing.
+livens_mutant(NAME lossless_series
+              FILE io/report/curves.cpp
+              OLD [[off = std::abs(shown - truth[c]);]]
+              NEW [[off = 0 * std::abs(shown - truth[c]);]]
+              TESTS_OF unit_io
+              MUST_FAIL Report.SeriesSayWhatTheyLose)

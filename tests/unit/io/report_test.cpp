@@ -109,6 +109,17 @@ TEST_F(Report, LossesAreStatedAndGrow)
     EXPECT_GT(loss(1000, "orientation"), loss(3000, "orientation"));
 }
 
+/// Series have all instants that elements have; where they cannot, what that loses is told.
+TEST_F(Report, SeriesSayWhatTheyLose)
+{
+    const auto loss = [&](double most_bytes) { return std::stod(found(page(most_bytes), "loss")); };
+    EXPECT_EQ(loss(8e6), 0);
+    const double some = loss(4e4), much = loss(1000);
+    EXPECT_GT(some, 1e-8);
+    EXPECT_LT(some, 0.1);
+    EXPECT_GT(much, some);
+}
+
 TEST_F(Report, OneOrTwoRuns)
 {
     const ReportInput input{scenario_, run_, "pendulum"};

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Series over time that the page cannot make of poses: energies, coordinates, reactions, loads, sensors.
-// Numbers are bounded, so instants become fewer as channels become more. The page interpolates them with the
-// degree of the elements (docs/program.md).
+// Numbers are bounded: where all that the elements have is too much, the page gets fewer instants of each
+// element, then of several together, and is told what that loses (docs/results.md).
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
 
 #include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/diagnostics.h"
@@ -16,8 +18,10 @@ namespace livens::inline io_internal {
 
 namespace {
 
-constexpr double most_numbers = 4e5;   // of all series, about: what they add to a page is to stay below 2 MB
-constexpr double most_instants = 700, fewest_instants = 120;
+constexpr double bytes_of_number = 8;   // of what poses may take: a series takes half as much as they do
+constexpr double fewest_instants = 120;
+constexpr double no_signal = 1e-12;   // of the largest number of all: rounding
+constexpr int looks = 400;            // at what series lose between their instants
 
 struct Channel {
     const char* kind;   ///< "energy", "joint", "reaction", "drive", "body", "load", "sensor"
@@ -31,19 +35,22 @@ struct Channel {
 struct CurveInstants {
     std::vector<double> ends;
     int degree = 0;
+    bool is_whole = true;   ///< as many instants as the elements resolve
     std::vector<double> nodes{0};
 
-    CurveInstants(const TimeMesh& mesh, std::size_t n_channels, int most_degree)
+    CurveInstants(const TimeMesh& mesh, std::size_t n_channels, int most_degree, double most_bytes)
     {
         const double wanted =
-            std::clamp(most_numbers / static_cast<double>(n_channels), fewest_instants, most_instants);
+            std::max(most_bytes / bytes_of_number / static_cast<double>(n_channels), fewest_instants);
         const double n = mesh.n_elements();
         // Elements are taken together where even two instants each would be too many.
         const auto merged = static_cast<std::size_t>(std::max(1.0, std::ceil(2 * n / wanted)));
         for (std::size_t e = 0; e < mesh.ends.size(); e += merged) ends.push_back(mesh.ends[e]);
         if (ends.back() != mesh.ends.back()) ends.push_back(mesh.ends.back());
         if (n < 1) return;
-        degree = merged > 1 ? 1 : std::clamp(static_cast<int>(wanted / n) - 1, 1, most_degree);
+        degree =
+            merged > 1 ? 1 : std::clamp(static_cast<int>(std::min(wanted / n, 99.0)) - 1, 1, most_degree);
+        is_whole = degree == most_degree;
         nodes = lobatto_basis(degree).nodes();
     }
     std::size_t n_elements() const { return std::max<std::size_t>(ends.size() - 1, 1); }
@@ -172,13 +179,54 @@ private:
     std::vector<Channel> channels_;
 };
 
+using Columns = std::vector<std::vector<double>>;   // of channels, node after node
+
+/// The most by which what the page shows between instants is off, as a part of the largest range that a
+/// series of the same unit has.
+double loss_between(const Curves& curves, const CurveInstants& instants, const Columns& columns)
+{
+    std::map<std::string, double> ranges;
+    double largest = 0;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        double low = columns[c][0], high = low;
+        for (const double x : columns[c]) {   // reactions that are not bounded are no numbers
+            low = x < low ? x : low;
+            high = x > high ? x : high;
+            largest = std::abs(x) > largest ? std::abs(x) : largest;
+        }
+        double& range = ranges[curves.channels()[c].unit];
+        if (high - low > range) range = high - low;
+    }
+    const LagrangeBasis basis = lobatto_basis(instants.degree);
+    const std::size_t n = instants.n_elements(), n_nodes = instants.nodes.size();
+    std::vector<double> weights(n_nodes);
+    double loss = 0;
+    for (int look = 0; look < looks; ++look) {
+        // Places that no motion keeps step with.
+        const double place = std::fmod(0.5 + look * std::numbers::phi, 1.0) * static_cast<double>(n);
+        const std::size_t e = std::min(static_cast<std::size_t>(place), n - 1);
+        const double s = place - static_cast<double>(e);
+        basis.values(s, weights);
+        const double t = instants.ends[e] + s * (instants.ends[e + 1] - instants.ends[e]);
+        const std::vector<double> truth = curves.at(t, false);
+        for (std::size_t c = 0; c < columns.size(); ++c) {
+            double shown = 0;
+            for (std::size_t a = 0; a < n_nodes; ++a) shown += weights[a] * columns[c][e * n_nodes + a];
+            const double range = ranges[curves.channels()[c].unit], off = std::abs(shown - truth[c]);
+            if (range > no_signal * largest && off / range > loss) loss = off / range;
+        }
+    }
+    return loss;
+}
+
 }   // namespace
 
-void write_curves(ReportData& data, const Scenario& scenario, const Run& run)
+void write_curves(ReportData& data, const Scenario& scenario, const Run& run, double most_bytes)
 {
     const Curves curves(scenario, run);
-    const CurveInstants instants(run.motion.mesh, curves.channels().size(), std::max(run.motion.X.degree, 2));
-    std::vector<std::vector<double>> columns(curves.channels().size());
+    const CurveInstants instants(run.motion.mesh, curves.channels().size(), std::max(run.motion.X.degree, 2),
+                                 most_bytes);
+    Columns columns(curves.channels().size());
     for (std::size_t e = 0; e < instants.n_elements(); ++e)
         for (std::size_t a = 0; a < instants.nodes.size(); ++a) {
             // An element end is told twice, from the left as the last node and from the right as the first:
@@ -193,6 +241,7 @@ void write_curves(ReportData& data, const Scenario& scenario, const Run& run)
     JsonWriter& json = data.json;
     json.key("curves").begin_object();
     json.member("every", instants.ends.size() == run.motion.mesh.ends.size());
+    json.member("loss", instants.is_whole ? 0.0 : loss_between(curves, instants, columns));
     json.key("nodes").value(std::span<const double>(instants.nodes)).end_object();
     json.key("channels").begin_array();
     for (const Channel& c : curves.channels()) {
