@@ -26,7 +26,7 @@ export function build_about(host: HTMLElement, run: Run, program: string, notice
   const curves =
     every && loss === 0
       ? ""
-      : ` The run has more elements than these series could have instants for: ${every ? "each element has fewer nodes" : "between every few elements they are straight lines"}, off by up to ${rough(loss)} of what they reach where it was looked at.`;
+      : ` These series need more instants than a page has room for: ${every ? "elements have fewer nodes or parts than they need" : "between every few elements they are straight lines"}, off by up to ${rough(loss)} of what they reach where it was looked at.`;
   const quality = meta.quality.every ? "" : " Series of quality show the largest of neighbouring elements.";
   host.append(
     card(

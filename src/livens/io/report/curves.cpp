@@ -181,42 +181,110 @@ private:
 
 using Columns = std::vector<std::vector<double>>;   // of channels, node after node
 
-/// The most by which what the page shows between instants is off, as a part of the largest range that a
-/// series of the same unit has.
-double loss_between(const Curves& curves, const CurveInstants& instants, const Columns& columns)
-{
-    std::map<std::string, double> ranges;
-    double largest = 0;
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-        double low = columns[c][0], high = low;
-        for (const double x : columns[c]) {   // reactions that are not bounded are no numbers
-            low = x < low ? x : low;
-            high = x > high ? x : high;
-            largest = std::abs(x) > largest ? std::abs(x) : largest;
-        }
-        double& range = ranges[curves.channels()[c].unit];
-        if (high - low > range) range = high - low;
-    }
-    const LagrangeBasis basis = lobatto_basis(instants.degree);
-    const std::size_t n = instants.n_elements(), n_nodes = instants.nodes.size();
-    std::vector<double> weights(n_nodes);
-    double loss = 0;
-    for (int look = 0; look < looks; ++look) {
-        // Places that no motion keeps step with.
-        const double place = std::fmod(0.5 + look * std::numbers::phi, 1.0) * static_cast<double>(n);
-        const std::size_t e = std::min(static_cast<std::size_t>(place), n - 1);
-        const double s = place - static_cast<double>(e);
-        basis.values(s, weights);
-        const double t = instants.ends[e] + s * (instants.ends[e + 1] - instants.ends[e]);
-        const std::vector<double> truth = curves.at(t, false);
+/// What the page shows between instants, and how far it is off.
+class Between {
+public:
+    Between(const Curves& curves, const CurveInstants& instants, const Columns& columns)
+        : curves_(curves), instants_(instants), columns_(columns), basis_(lobatto_basis(instants.degree)),
+          weights_(instants.nodes.size())
+    {
         for (std::size_t c = 0; c < columns.size(); ++c) {
-            double shown = 0;
-            for (std::size_t a = 0; a < n_nodes; ++a) shown += weights[a] * columns[c][e * n_nodes + a];
-            const double range = ranges[curves.channels()[c].unit], off = std::abs(shown - truth[c]);
-            if (range > no_signal * largest && off / range > loss) loss = off / range;
+            double low = columns[c][0], high = low;
+            for (const double x : columns[c]) {   // reactions that are not bounded are no numbers
+                low = x < low ? x : low;
+                high = x > high ? x : high;
+                largest_ = std::abs(x) > largest_ ? std::abs(x) : largest_;
+            }
+            double& range = ranges_[curves.channels()[c].unit];
+            if (high - low > range) range = high - low;
         }
     }
-    return loss;
+
+    /// At a place of an element, as a part of the largest range that a series of the same unit has.
+    double loss(std::size_t e, double s)
+    {
+        basis_.values(s, weights_);
+        const double t = instants_.ends[e] + s * (instants_.ends[e + 1] - instants_.ends[e]);
+        const std::vector<double> truth = curves_.at(t, false);
+        const std::size_t n_nodes = weights_.size();
+        double loss = 0;
+        for (std::size_t c = 0; c < columns_.size(); ++c) {
+            double shown = 0;
+            for (std::size_t a = 0; a < n_nodes; ++a) shown += weights_[a] * columns_[c][e * n_nodes + a];
+            const double range = ranges_[curves_.channels()[c].unit], off = std::abs(shown - truth[c]);
+            if (range > no_signal * largest_ && off / range > loss) loss = off / range;
+        }
+        return loss;
+    }
+    double largest_loss()
+    {
+        const std::size_t n = instants_.n_elements();
+        double all = 0;
+        for (int look = 0; look < looks; ++look) {
+            // Places that no motion keeps step with.
+            const double place = std::fmod(0.5 + look * std::numbers::phi, 1.0) * static_cast<double>(n);
+            const std::size_t e = std::min(static_cast<std::size_t>(place), n - 1);
+            all = std::max(all, loss(e, place - static_cast<double>(e)));
+        }
+        return all;
+    }
+
+private:
+    const Curves& curves_;
+    const CurveInstants& instants_;
+    const Columns& columns_;
+    LagrangeBasis basis_;
+    std::vector<double> weights_;
+    std::map<std::string, double> ranges_;   // of units
+    double largest_ = 0;
+};
+
+/// All channels at the nodes of an element.
+void take(const Curves& curves, const CurveInstants& instants, std::size_t e, Columns& columns)
+{
+    for (std::size_t a = 0; a < instants.nodes.size(); ++a) {
+        // An element end is told twice, from the left as the last node and from the right as the first:
+        // jumps stay jumps.
+        const std::vector<double> values = curves.at(instants.at(e, a), a > 0 && instants.nodes[a] == 1);
+        for (std::size_t c = 0; c < columns.size(); ++c) columns[c].push_back(values[c]);
+    }
+}
+
+/// Halves elements in which series do what no polynomial follows, as where a steep law turns over, as long as
+/// there is room. False: some are left.
+bool refine(const Curves& curves, CurveInstants& instants, Columns& columns, double most_bytes)
+{
+    constexpr double seen = 2e-3;   // of the range
+    constexpr double places[] = {0.23, 0.61, 0.86};
+    const double most = most_bytes / bytes_of_number / static_cast<double>(columns.size());
+    for (int round = 0; round < 8; ++round) {
+        Between between(curves, instants, columns);
+        const std::size_t n = instants.n_elements(), n_nodes = instants.nodes.size();
+        std::vector<bool> is_halved(n);
+        std::size_t n_halved = 0;
+        for (std::size_t e = 0; e < n; ++e) {
+            is_halved[e] = std::ranges::any_of(places, [&](double s) { return between.loss(e, s) > seen; });
+            n_halved += is_halved[e] ? 1 : 0;
+        }
+        if (n_halved == 0) return true;
+        if (static_cast<double>((n + n_halved) * n_nodes) > most) return false;
+        CurveInstants finer = instants;
+        finer.ends = {instants.ends[0]};
+        Columns all(columns.size());
+        for (std::size_t e = 0; e < n; ++e) {
+            if (is_halved[e]) finer.ends.push_back(0.5 * (instants.ends[e] + instants.ends[e + 1]));
+            finer.ends.push_back(instants.ends[e + 1]);
+            const std::size_t last = finer.ends.size() - 2;
+            if (is_halved[e])
+                for (const std::size_t half : {last - 1, last}) take(curves, finer, half, all);
+            for (std::size_t c = 0; c < all.size() && !is_halved[e]; ++c)
+                all[c].insert(all[c].end(), columns[c].begin() + static_cast<std::ptrdiff_t>(e * n_nodes),
+                              columns[c].begin() + static_cast<std::ptrdiff_t>((e + 1) * n_nodes));
+        }
+        instants = std::move(finer);
+        columns = std::move(all);
+    }
+    return false;
 }
 
 }   // namespace
@@ -224,24 +292,21 @@ double loss_between(const Curves& curves, const CurveInstants& instants, const C
 void write_curves(ReportData& data, const Scenario& scenario, const Run& run, double most_bytes)
 {
     const Curves curves(scenario, run);
-    const CurveInstants instants(run.motion.mesh, curves.channels().size(), std::max(run.motion.X.degree, 2),
-                                 most_bytes);
+    CurveInstants instants(run.motion.mesh, curves.channels().size(), std::max(run.motion.X.degree, 2),
+                           most_bytes);
     Columns columns(curves.channels().size());
-    for (std::size_t e = 0; e < instants.n_elements(); ++e)
-        for (std::size_t a = 0; a < instants.nodes.size(); ++a) {
-            // An element end is told twice, from the left as the last node and from the right as the first:
-            // jumps stay jumps.
-            const std::vector<double> values = curves.at(instants.at(e, a), a > 0 && instants.nodes[a] == 1);
-            for (std::size_t c = 0; c < columns.size(); ++c) columns[c].push_back(values[c]);
-        }
+    for (std::size_t e = 0; e < instants.n_elements(); ++e) take(curves, instants, e, columns);
+    const bool is_every = instants.ends.size() == run.motion.mesh.ends.size(),
+               is_seen = run.motion.n_elements() < 1 ||
+                         (instants.is_whole && refine(curves, instants, columns, most_bytes));
     std::vector<double> all;
     for (const std::vector<double>& column : columns) all.insert(all.end(), column.begin(), column.end());
     data.payload.add("curve", Precision::single, all);
     data.payload.add("curve_end", Precision::full, instants.ends);
     JsonWriter& json = data.json;
     json.key("curves").begin_object();
-    json.member("every", instants.ends.size() == run.motion.mesh.ends.size());
-    json.member("loss", instants.is_whole ? 0.0 : loss_between(curves, instants, columns));
+    json.member("every", is_every);
+    json.member("loss", is_seen ? 0.0 : Between(curves, instants, columns).largest_loss());
     json.key("nodes").value(std::span<const double>(instants.nodes)).end_object();
     json.key("channels").begin_array();
     for (const Channel& c : curves.channels()) {
