@@ -233,7 +233,8 @@ class OfStates {
 public:
     OfStates(const Result& r, std::size_t n_times)
         : c(n_times), model_(with_load_sensors(r.scenario->model)), readings_(model_, r.run.motion),
-          coordinates_(model_, r.run.motion, coordinates_of(model_)), turns_(model_, r.run.motion)
+          coordinates_(model_, r.run.motion, coordinates_of(model_)), turns_(model_, r.run.motion),
+          accelerations_(model_, r.run.motion)
     {
         const std::size_t n = coordinates_of(model_).size();
         c.declare("coordinate", {n});
@@ -243,13 +244,14 @@ public:
         c.declare("potential", {});
     }
 
-    void add(const State& state, Side side)
+    void add(const State& given, Side side)
     {
+        const State state = accelerations_.on_joints(given);
         for (const CoordinateValue& q : coordinates_.at(state)) {
             c.add("coordinate", q.value);
             c.add("coordinate_rate", q.rate);
         }
-        for (const double x : readings_.at(state, side)) c.add("reading", x);
+        for (const double x : readings_.at(given, side)) c.add("reading", x);
         c.add("kinetic", kinetic_energy(model_, state.X, state.V));
         c.add("potential", potential_energy(model_, {state.t, side}, state.X, state.V, turns_.at(state)));
     }
@@ -261,14 +263,14 @@ private:
     SensorReadings readings_;
     FollowedCoordinates coordinates_;
     LoadTurns turns_;
+    Accelerations accelerations_;
 };
 
 nb::dict scalars_at(const Result& r, const Times& times, const Times& before)
 {
     OfStates of_states(r, times.size());
-    const Accelerations accelerations(r.scenario->model, r.run.motion);
     at_all(times, [&](double t, std::size_t i) {
-        of_states.add(accelerations.on_joints(sample_state(r.run.motion, t)), side_of(before, i));
+        of_states.add(sample_state(r.run.motion, t), side_of(before, i));
     });
     return of_states.c.take();
 }

@@ -209,13 +209,14 @@ SensorReadings::SensorReadings(const Model& model, const Motion& motion)
 
 std::vector<double> SensorReadings::at(double t, Side side) const
 {
-    return at(accelerations_->on_joints(sample_state(motion_, t)), side);
+    return at(sample_state(motion_, t), side);
 }
 
-std::vector<double> SensorReadings::at(const State& state, Side side) const
+std::vector<double> SensorReadings::at(const State& given, Side side) const
 {
     AcceleratedState accelerated;
-    if (has_accelerations_) accelerated = accelerations_->at(state, side);
+    if (has_accelerations_) accelerated = accelerations_->at(given, side);
+    const State state = accelerations_->on_joints(given);
     const std::vector<CoordinateValue> coordinates =
         followed_.at(state, has_accelerations_ ? &accelerated : nullptr);
     const std::vector<double> angles = turns_.at(state);

@@ -104,7 +104,7 @@ public:
     /// element ends in the nearest state that joints allow. Where a load jumps, what is there on that side.
     std::vector<double> at(double t, Side side = Side::right) const;
     /// The same in a state at an instant of the motion, as sample_exactly() has it.
-    std::vector<double> at(const State& state, Side side = Side::right) const;
+    std::vector<double> at(const State& given, Side side = Side::right) const;
 
 private:
     const Model& model_;

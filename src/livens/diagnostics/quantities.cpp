@@ -211,7 +211,7 @@ void Quantities::at(const State& given, Side side, std::span<const NamedQuantity
     }
     if (any(QuantityOf::load, QuantityOf::model)) put_loads(state, side, wanted, numbers);
     if (!any(QuantityOf::sensor)) return;
-    const std::vector<double> read = sources_->sensors.at(state, side);
+    const std::vector<double> read = sources_->sensors.at(given, side);
     int first = n_numbers_ - static_cast<int>(read.size());   // sensors stand last
     for (const NamedQuantity& q : wanted)
         if (q.of == QuantityOf::sensor)

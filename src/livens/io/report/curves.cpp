@@ -136,7 +136,7 @@ public:
                 if (lines_[l].place) all.insert(all.end(), forces[l].torque.a, forces[l].torque.a + 3);
             }
         }
-        for (const double x : sensors_.at(state, instant.side)) all.push_back(x);
+        for (const double x : sensors_.at(given, instant.side)) all.push_back(x);
         return all;
     }
 
