@@ -249,8 +249,8 @@ Result from_bytes(const nb::bytes& bytes)
     return with_scenario(read_run_from(source), "pickle");
 }
 
-/// Throws what Python's signals throw.
-void export_to(const Result& r, const std::string& format, const std::string& result, const std::string& file,
+/// What is doubtful of it. Throws what Python's signals throw.
+std::string export_to(const Result& r, const std::string& format, const std::string& result, const std::string& file,
                bool force, int instants, const std::vector<std::string>& units, const nb::dict& picture)
 {
     PictureOptions o;
@@ -274,14 +274,19 @@ void export_to(const Result& r, const std::string& format, const std::string& re
         return PyErr_CheckSignals() == 0;
     };
     const Patience patience(goes_on);
+    std::string doubt;
     try {
-        for (const ExportFormat& f : export_formats())
-            if (f.word == format)
-                f.write(file, {result, *r.scenario, r.run, force, static_cast<Instants>(instants), units, o});
+        const ExportInput input{result, *r.scenario, r.run, force, static_cast<Instants>(instants), units, o};
+        for (const ExportFormat& f : export_formats()) {
+            if (f.word != format) continue;
+            if (f.doubt != nullptr) doubt = f.doubt(input);
+            f.write(file, input);
+        }
     } catch (const Stopped&) {
         const nb::gil_scoped_acquire lock;
         throw nb::python_error();
     }
+    return doubt;
 }
 
 }   // namespace
