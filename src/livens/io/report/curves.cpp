@@ -21,7 +21,7 @@ namespace {
 constexpr double bytes_of_number = 8;   // of what poses may take: a series takes half as much as they do
 constexpr double fewest_instants = 120;
 constexpr double no_signal = 1e-12;   // of the largest number of all: rounding
-constexpr int n_looks = 400;           // at what series lose between their instants
+constexpr int n_places = 400;          // at what series lose between their instants
 
 struct Channel {
     const char* kind;   ///< "energy", "joint", "reaction", "drive", "body", "load", "sensor"
@@ -220,7 +220,7 @@ public:
     {
         const std::size_t n = instants_.n_elements();
         double all = 0;
-        for (int look = 0; look < n_looks; ++look) {
+        for (int look = 0; look < n_places; ++look) {
             // Places that no motion keeps step with.
             const double place = std::fmod(0.5 + look * std::numbers::phi, 1.0) * static_cast<double>(n);
             const std::size_t e = std::min(static_cast<std::size_t>(place), n - 1);
