@@ -39,7 +39,7 @@ class Added(Mapping[str, str]):
         """What stands before all names."""
         self._names = dict.fromkeys(names)
 
-    def __getitem__(self, name: str) -> str:
+    def __getitem__(self, name: Any) -> str:
         name = name.name if hasattr(name, "_table") else name
         if name not in self._names:
             raise unknown_name("part", name, list(self._names))

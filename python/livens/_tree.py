@@ -294,10 +294,9 @@ def _scenario_lines(root: Mapping[str, Any], path: str) -> list[str]:
         elif isinstance(value, list):
             for item in value:
                 inside = item.get("model") if name == "include" else None
-                has_model = isinstance(inside, dict)
-                own = {key: of for key, of in item.items() if not (has_model and key == "model")}
+                own = {key: of for key, of in item.items() if not (isinstance(inside, dict) and key == "model")}
                 lines += ["", f"[[{header}]]", *toml_lines(own)]
-                if has_model:
+                if isinstance(inside, dict):
                     lines += ["", f"[{header}.model]", *_scenario_lines(inside, f"{header}.model.")]
     return lines
 
