@@ -40,10 +40,10 @@ class Added(Mapping[str, str]):
         self._names = dict.fromkeys(names)
 
     def __getitem__(self, name: Any) -> str:
-        name = name.name if hasattr(name, "_table") else name
-        if name not in self._names:
-            raise unknown_name("part", name, list(self._names))
-        return self.prefix + name
+        plain: str = name.name if hasattr(name, "_table") else name
+        if plain not in self._names:
+            raise unknown_name("part", plain, list(self._names))
+        return self.prefix + plain
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
