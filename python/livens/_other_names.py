@@ -107,7 +107,8 @@ JOINT = {
     "q position pos theta phi x coordinate value rotation": ("angle", "displacement"),
     "angledeg degrees angledegrees deg": "np.degrees(sol['@'].angle)",
     "acceleration angularacceleration qddot": ("angle_acceleration", "displacement_acceleration"),
-    "motortorque drivetorque effort actuatorforce": "a drive is read by its own name: sol['motor'].torque or .force",
+    "motortorque drivetorque effort actuatorforce drive_torque": "what a drive or actuator does along the coordinate is read by its own "
+                                                                 "name: sol['motor'].effort",
 }
 
 _RESULTS = {   # endings of other formats, which save() does not write

@@ -30,7 +30,7 @@ UNITS = {
     "potential": "J", "energy": "J", "work": "J", "drift": "J", "position_error": "m", "orientation_error": "rad",
     "velocity_error": "m/s", "rigidity_stress": "N m", "mean_stress": "Pa", "reaction_error": "1", "growth": "1", "t": "s", "power": "W",
     "acceleration": "m/s^2", "angular_acceleration": "rad/s^2", "center_acceleration": "m/s^2",
-    "angle_acceleration": "rad/s^2", "displacement_acceleration": "m/s^2", "drive_torque": "N m", "drive_force": "N"}
+    "angle_acceleration": "rad/s^2", "displacement_acceleration": "m/s^2"}
 _BODY_ARRAYS = ("position", "center_of_mass", "quaternion", "directors", "velocity", "angular_velocity",
                 "angular_velocity_body", "acceleration", "angular_acceleration", "linear_momentum", "angular_momentum")
 
@@ -310,10 +310,13 @@ class JointSeries(Part):
             if name in (known, known + "_rate"):
                 column = "coordinate" if name == known else "coordinate_rate"
                 return self._series._shaped(self._series._scalars()[column][:, self._first + i])
-        if name in ("drive_torque", "drive_force", "power"):
+        if name in ("effort", "power"):
             column = f"{name} {self._index}"
-            if column in self._series._drives():
+            if column in self._series._result.drive_columns:
                 return self._series._shaped(self._series._drives()[column][:, 0])
+        effort = self._efforts().get(name)
+        if effort is not None:
+            return effort["effort"]
         if name.startswith("_"):
             raise AttributeError(name)
         has = [key for key in dir(type(self)) if not key.startswith("_")]
@@ -325,9 +328,22 @@ class JointSeries(Part):
 
     def _names(self) -> list[str]:
         names = [name + end for name in self.coordinates for end in ("", "_rate", "_acceleration")]
-        drives = [key for key in ("drive_torque", "drive_force", "power")
-                  if f"{key} {self._index}" in self._series._result.drive_columns]
-        return [*names, "force", "torque", *drives]
+        drives = [key for key in ("effort", "power") if f"{key} {self._index}" in self._series._result.drive_columns]
+        return [*names, "force", "torque", *drives, *self._efforts()]
+
+    def _efforts(self) -> dict[str, LoadSeries]:
+        """The loads that the joint states itself: "effort" along its coordinate, or of two "angle_effort" and the other."""
+        ends = {"": "effort", " angle": "angle_effort", " displacement": "displacement_effort"}
+        own = [name for name, type, told in self._series._result.loads if type == "joint" and told[0][0] == "effort"]
+        return {word: self._series.loads[self._name + end] for end, word in ends.items() if self._name + end in own}
+
+    def unit(self, name: str) -> str:
+        """The unit of an attribute: ``"N m"``."""
+        if name in self._efforts():
+            return self._efforts()[name].unit("effort")
+        if name == "effort":
+            return str(self._series._result.drive_columns[f"effort {self._index}"])
+        return super().unit(name)
 
     def force_in(self, body: str | Entry | Part) -> Floats:
         """:attr:`force` in components along the axes of a body, N, shape (n, 3)."""

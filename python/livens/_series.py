@@ -186,6 +186,8 @@ class Series:
         found = [group for group in groups if word in group]
         if len(found) == 1:
             return found[0][word]
+        if word not in groups[0] and word not in groups[3] and (word, "joint") in [load[:2] for load in self._result.loads]:
+            return groups[1][word]   # what the joint states itself is its effort
         if found:
             ways = [f".{kind}['{word}']" for kind, group in zip(("bodies", "joints", "loads", "sensors", "points"), groups)
                     if word in group]

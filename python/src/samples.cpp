@@ -457,18 +457,17 @@ nb::object snapped(const Result& r, const Times& times)
 
 }   // namespace
 
-std::vector<std::string> drive_columns(const Result& r)
+std::map<std::string, std::string> drive_columns(const Result& r)
 {
-    std::vector<std::string> names;
+    std::map<std::string, std::string> names;
     const Model& model = r.scenario->model;
     if (r.run.motion.multipliers.empty() && r.run.motion.end_multipliers.empty()) return names;
     for (std::size_t j = 0; j < model.joints().size(); ++j) {
         const Joint& joint = model.joints()[j];
         if (joint.type != "drive") continue;
         if (const auto effort = drive_effort(joint))
-            names.push_back((effort->coordinate.is_angle() ? "drive_torque " : "drive_force ") +
-                            std::to_string(j));
-        names.push_back("power " + std::to_string(j));
+            names["effort " + std::to_string(j)] = effort->coordinate.is_angle() ? "N m" : "N";
+        names["power " + std::to_string(j)] = "W";
     }
     return names;
 }

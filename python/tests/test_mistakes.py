@@ -65,7 +65,8 @@ def test_calls_of_other_programs(pendulum: lv.Model, sol: lv.Solution) -> None:
             (lambda: m.add_load("f", "rod", value=(0, 0, 1)), "m.add_force('f', 'rod', ..)"),
             (lambda: m.add_revolute("x", "world", "rod", (0, 0, 0), (0, 1, 0)), "at=(0, 0, 0), axis=(0, 1, 0)"),
             (lambda: m.add_revolute("world", "rod", at=(0, 0, 0), axis=(0, 1, 0)), "its own name comes first"),
-            (lambda: m.add_revolute("x", "world", "rod", at=(0, 0, 0), axis=(0, 1, 0), damping=1), "m.add_spring(..)"),
+            (lambda: m.add_revolute("x", "world", "rod", at=(0, 0, 0), axis=(0, 1, 0), friction=1), "m.add_actuator(..)"),
+            (lambda: m.add_revolute("x", "world", "rod", at=(0, 0, 0), axis=(0, 1, 0), viscous_damping=1), "'damping'"),
             (lambda: m.add_revolute("x", "ground", "rod", at=(0, 0, 0), axis=(0, 1, 0)), "\"world\""),
             (lambda: m.add_joint_drive("m", "pivot", expression=lambda t: t), "is a string"),
             (lambda: m.add_body("b", lv.box(1, 1, 1, mass=1), euler=(0, 0, 1)), "quaternion = [w, x, y, z]"),
@@ -86,9 +87,9 @@ def test_calls_of_other_programs(pendulum: lv.Model, sol: lv.Solution) -> None:
 
 
 def test_scenarios_are_answered_in_their_own_words(pendulum: lv.Model) -> None:
-    text = pendulum.to_toml() + "\n[[joint]]\nname = \"x\"\ntype = \"revolute\"\nbetween = [\"world\", \"rod\"]\ndamping = 1\n"
+    text = pendulum.to_toml() + "\n[[joint]]\nname = \"x\"\ntype = \"revolute\"\nbetween = [\"world\", \"rod\"]\nfriction = 1\n"
     for text in (text, text + "[time]\nend = 1\n"):
-        assert "[[load]] with type = \"spring\", joint = \"x\"" in answer(lambda: lv.load(text=text))
+        assert "[[load]] with type = \"actuator\", joint = \"x\"" in answer(lambda: lv.load(text=text))
 
 
 def test_files_of_results_may_have_any_other_name(sol: lv.Solution, tmp_path: Path) -> None:

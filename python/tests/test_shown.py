@@ -108,7 +108,7 @@ def test_sensors_read_accelerations() -> None:
     assert np.stack([s["rim"].ax, s["rim"].ay], axis=1) == pytest.approx(expected, abs=2e-6)
     assert s["shaft"].angle_acceleration == pytest.approx(np.ones(41), abs=1e-9)
     inertia = 0.5 * 0.2**2
-    assert s["motor"].drive_torque == pytest.approx(inertia * np.ones(41), abs=1e-7)
+    assert s["motor"].effort == pytest.approx(inertia * np.ones(41), abs=1e-7)
     assert s["motor"].power == pytest.approx(inertia * w, abs=1e-6)
     assert sol.peak("shaft.angle_rate", unit="rpm").value == pytest.approx(3 * 30 / np.pi)
 

@@ -1043,6 +1043,38 @@ livens_mutant(NAME looks_without_numbers
               MUST_FAIL Inside.LayersOfAnyWidthAreInTheEstimate
                         Inside.LawsAreFollowedToTheAccuracyThatIsTold)
 
+# A limit holds a joint that leaves it faster than its spring follows.
+livens_mutant(NAME limits_that_pull
+              FILE multibody/loads/joint_spring.cpp
+              OLD [[if (s <= 0 || g <= 0) return;]]
+              NEW [[if (s <= 0) return;]]
+              TESTS_OF unit_io
+              MUST_FAIL JointLimits.NeverPullAndStoreWhatTheyTake)
+
+# What a limit dissipates is not told.
+livens_mutant(NAME limits_without_loss
+              FILE multibody/loads/joint_spring.cpp
+              OLD [[return -stiffness * (std::max(guard(q), 0.0) - s) * outwards * q.rate;]]
+              NEW [[return 0 * s;]]
+              TESTS_OF properties
+              MUST_FAIL LoadKit/EveryLoad.Passes/joint_spring_limits_of_an_angle)
+
+# What hangs on a joint is left out of the inertia that its limits are made for.
+livens_mutant(NAME limits_for_one_body
+              FILE io/scenario/loads/joint_limits.cpp
+              OLD [[if (std::ranges::find(found, next) == found.end()) found.push_back(next);]]
+              NEW [[;]]
+              TESTS_OF unit_io
+              MUST_FAIL JointLimits.HaveTheirSpringsFromTheBodies)
+
+# The damper of all turns knows two of its axes.
+livens_mutant(NAME damper_of_two_axes
+              FILE multibody/loads/relative_spin.cpp
+              OLD [[for (int k = 0; k < 3; ++k) u[3 + k] += 0.5 * w[k];]]
+              NEW [[for (int k = 0; k < 2; ++k) u[3 + k] += 0.5 * w[k];]]
+              TESTS_OF unit_multibody
+              MUST_FAIL RotationalDamper.TurnsAgainstTheRelativeAngularVelocity)
+
 # The rate of a coordinate knows the motion of one body alone.
 livens_mutant(NAME rates_of_tapes_by_one_factor
               FILE multibody/loads/load_coordinate_on_tape.cpp

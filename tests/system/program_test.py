@@ -378,14 +378,14 @@ output = 0.25
             rows = list(csv.DictReader(file))
         self.assertEqual(list(rows[0])[-11:], [
             "hinge.angle [rad]", "hinge.angle_rate [rad/s]", "hinge.angle_acceleration [rad/s^2]", "hinge.force.x [N]", "hinge.force.y [N]", "hinge.force.z [N]",
-            "hinge.torque.x [N m]", "hinge.torque.y [N m]", "hinge.torque.z [N m]", "effort.force [N m]", "effort.power [W]"])
+            "hinge.torque.x [N m]", "hinge.torque.y [N m]", "hinge.torque.z [N m]", "effort.effort [N m]", "effort.power [W]"])
         for row in rows:
             at = json.loads(self.expect(0, "sample", "run.nc", "--joint", "hinge", f"--at={row['t [s]']}", "--json").out)
             self.assertEqual(float(row["hinge.angle [rad]"]), at["angle"])
             self.assertEqual(float(row["hinge.angle_rate [rad/s]"]), at["angle_rate"])
             for i, x in enumerate("xyz"):
                 self.assertEqual(float(row[f"hinge.force.{x} [N]"]), at["force"][i])
-            self.assertAlmostEqual(float(row["effort.force [N m]"]), -3 * at["angle"], delta=1e-14)
+            self.assertAlmostEqual(float(row["effort.effort [N m]"]), -3 * at["angle"], delta=1e-14)
         self.assertGreater(abs(float(rows[-1]["hinge.angle [rad]"])), 0.1)
 
     def test_not_converged_writes_what_there_is(self):

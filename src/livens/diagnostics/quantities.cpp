@@ -149,8 +149,7 @@ void Quantities::add_parts()
         if (joint.type != "drive") continue;
         if (const auto& effort = sources_->efforts[static_cast<std::size_t>(j)]) {
             const bool is_angle = effort->coordinate.is_angle();
-            add(QuantityOf::drive, j, joint.name, is_angle ? "drive_torque" : "drive_force",
-                is_angle ? "N m" : "N");
+            add(QuantityOf::drive, j, joint.name, "effort", is_angle ? "N m" : "N");
         }
         add(QuantityOf::drive, j, joint.name, "power", "W");
     }

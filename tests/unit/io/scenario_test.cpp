@@ -480,7 +480,7 @@ const std::set<std::string_view> codes_of_others{
     "repeat-index",       "density-field",     "mesh-file",     "mesh-format",      "mesh-inverted",
     "mesh-open",          "mesh-path",         "mesh-region",   "mesh-unit",        "surface-unknown",
     "mesh-non-manifold",  "mesh-self-contact",   // soundness_test.cpp of geometry
-    "not-in-this-version"};                      // at present of no key
+    "not-in-this-version"};                      // see schema_test.cpp
 
 /// The reader refuses these before the core sees them, or only calls of the library lead to them; a missing
 /// backend depends on the build, and files of results have tests of their own.

@@ -145,7 +145,7 @@ private:
     void add_channels(const NamedQuantity& q)
     {
         const bool is_coordinate = q.of == QuantityOf::coordinate;
-        std::string name = q.what.starts_with("drive_") ? q.what.substr(6) : q.what;
+        std::string name = q.what != "effort" ? q.what : q.unit == "N m" ? "torque" : "force";
         std::ranges::replace(name, '_', ' ');
         const char* const kind = is_coordinate ? "joint" : q.of == QuantityOf::body ? "body" : "drive";
         const int index =

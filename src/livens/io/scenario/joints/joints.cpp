@@ -341,21 +341,21 @@ Table joint_table()
         "[[joint]]",
         "A joint is placed in one of three ways. First, by `at`: one point in the world, where `[[body]]` "
         "places the bodies; `axis` and `axes` are then world directions. Second, by `points`: one point per "
-        "body, in that body's coordinates (for the world: world coordinates); `axes` are then one direction "
-        "per body, in the same coordinates. Third, by `frames`: one frame per body. Only the second and "
-        "third way can describe bodies whose placement violates the joint. The reaction of a joint is the "
-        "force and torque that it exerts on the second body of `between`, or on the only body of a joint to "
-        "the world. Joint coordinates are those of the second body relative to the first, right-handed about "
-        "the axis. They are zero where `[[body]]` places the bodies, unless `coordinate` gives another "
-        "value; angles count full turns.",
+        "body, in its coordinates; `axes` are then one direction per body, in the same coordinates. Third, "
+        "by `frames`: one frame per body. Only the second and third way can describe bodies whose placement "
+        "violates the joint. The reaction of a joint is the force and torque that it exerts on the second "
+        "body of `between`, or on the only body of a joint to the world. Joint coordinates are those of the "
+        "second body relative to the first, right-handed about the axis. They are zero where `[[body]]` "
+        "places the bodies, unless `coordinate` gives another value; angles count full turns.",
         {Key{"name", types::text,
-             "Name of the joint. Default: type and bodies, as in `rod world-upper`, if no other joint has "
-             "this name."},
+             "Name of the joint. Default: type and bodies, as in `rod world-upper`, if not taken."},
          Key{"type", types::choice, ""}.needed(),
          Key{"until", types::number,
-             "Time at which the joint is released: velocities continue, the reaction ends. Default: never. "
-             "For the families lobatto and radau.",
-             "s"}}}
+             "Time of release: velocities continue, the reaction ends. Default: never. lobatto and radau "
+             "only.",
+             "s"},
+         Key{"rotor_inertia", types::later,
+             "a flywheel on the world and a gear of ratio 1 (slider: rack_and_pinion) have this effect"}}}
         .with_kinds("type", std::move(all));
 }
 

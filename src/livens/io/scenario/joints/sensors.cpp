@@ -87,7 +87,8 @@ const std::vector<SensorKind>& sensor_kinds()
          make_relative},
         {{"load",
           "forces and power of a load: for a spring between points its `force` (positive in tension) and "
-          "`length`; for springs and actuators on joints the `force` along the coordinate; for a bushing "
+          "`length`; for springs and actuators on joints their `effort` along the coordinate (N, N m); for a "
+          "bushing "
           "`force_x` .. `torque_z`, and u as `displacement_x` .. `rotation_z`; for other loads `x`, `y`, "
           "`z`; for all the `power` supplied to the bodies, W",
           {Key{"load", types::text, "Name of the load."}.needed()}},

@@ -197,8 +197,12 @@ std::vector<Key> keys_of_bushing()
         Key{"damping", types::list,
             "Damping in the same form, for the rate of u. Its last three components are rates of the "
             "rotation vector: they equal the relative angular velocity for small rotations and for rotations "
-            "about one axis, but not for large rotations about several axes."}
+            "about one axis, but not for large rotations about several axes; see `damping_by`."}
             .each_in(units_of_bushing("N s/m", "N s/rad", "N m s/m", "N m s/rad")),
+        choice("damping_by", {"rotation_vector", "angular_velocity"},
+               "Quantity that the last three components of the damping act on: the rate of the rotation "
+               "vector, or the "
+               "relative angular velocity in axes of the first frame."),
         Key{"preload", types::list,
             "Three forces in N and three torques in N m that do not depend on u, with the sign of the "
             "elastic ones at positive u."}
@@ -219,11 +223,30 @@ Load make_drag(const LoadSources& p)
                 places(p.builder));
 }
 
+Load make_rotational_damper(const LoadSources& p)
+{
+    return rotational_damper(p.name, p.first, p.second, p.section.number("damping"), places(p.builder));
+}
+
 Load make_attraction(const LoadSources& p)
 {
     return attraction(p.name, p.first, p.builder.model().bodies()[p.first],
                       {p.section.vector("point"), p.section.number("mu"), p.section.truth("gradient")},
                       places(p.builder));
+}
+
+std::vector<Key> keys_of_attraction()
+{
+    return {body_key(),
+            Key{"point", types::point, "Position of the attracting point in the world.", "m", "[0, 0, 0]"},
+            Key{"mu", types::number, "Gravitational parameter: gravitational constant times attracting mass.",
+                "m^3/s^2"}
+                .needed()
+                .within(positive),
+            Key{"gradient", types::truth,
+                "Whether to include the next term of the potential: the gravity gradient, which exerts a "
+                "torque on an extended body.",
+                "", "false"}};
 }
 
 }   // namespace
@@ -248,6 +271,14 @@ const std::vector<LoadKind>& load_kinds()
           keys_of_bushing()},
          make_bushing,
          check_bushing},
+        {{"rotational_damper",
+          "torque against the relative angular velocity of two bodies, for rotations of any kind",
+          {Key{"between", types::names,
+               "Names of the two bodies, first and second; one of them may be `\"world\"`."}
+               .needed(),
+           Key{"damping", types::number, "Damping torque per rad/s.", "N m s/rad"}.needed().within(
+               not_negative)}},
+         make_rotational_damper},
         {{"drag",
           "resistance (linear + quadratic abs(v)) v against the velocity v of a point relative to the medium",
           {body_of_point(), point,
@@ -257,18 +288,8 @@ const std::vector<LoadKind>& load_kinds()
            Key{"medium", types::vector3, "Velocity of the medium, world axes.", "m/s", "[0, 0, 0]"}}},
          make_drag,
          check_drag},
-        {{"attraction",
-          "gravitational attraction toward a point: mu mass / r^2 at the centre of mass",
-          {body_key(),
-           Key{"point", types::point, "Position of the attracting point in the world.", "m", "[0, 0, 0]"},
-           Key{"mu", types::number, "Gravitational parameter: gravitational constant times attracting mass.",
-               "m^3/s^2"}
-               .needed()
-               .within(positive),
-           Key{"gradient", types::truth,
-               "Whether to include the next term of the potential: the gravity gradient, which exerts a "
-               "torque on an extended body.",
-               "", "false"}}},
+        {{"attraction", "gravitational attraction toward a point: mu mass / r^2 at the centre of mass",
+          keys_of_attraction()},
          make_attraction},
         {{"traction", "force per unit area on a surface of the body's shape",
           keys_on_body("traction", "Pa",

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "livens/io/scenario/joints/joints.h"
-#include "livens/io/scenario/loads/load_kinds.h"
+#include "livens/io/scenario/loads/load_makers.h"
 
 namespace livens::inline io_internal {
 
@@ -33,7 +33,8 @@ std::string claim_load_name(const Section& load, std::unordered_set<std::string>
     if (load.has("name")) {
         if (load.find("name") != nullptr)
             claim_name(load, "load", load.text("name"), taken,
-                       {"", "rename one of them, or leave out the name"});
+                       {"a joint with 'damping' or 'stiffness' is a load of its name as well",
+                        "rename one of them, or leave out the name"});
         return load.text("name");
     }
     const std::string base = default_name(load);
@@ -116,7 +117,8 @@ void read_loads(Builder& builder)
 {
     const std::span<const Section> sections = builder.top().sections("load");
     // Known names come first, so that a default does not take one of them.
-    std::unordered_set<std::string> taken;
+    const std::vector<std::string> of_joints = names_of_joint_loads(builder);
+    std::unordered_set<std::string> taken(of_joints.begin(), of_joints.end());
     for (const Load& load : builder.model().loads()) taken.insert(load.name);   // of what is included
     std::vector<std::string> names(sections.size());
     std::vector<bool> is_good(sections.size());
@@ -129,6 +131,7 @@ void read_loads(Builder& builder)
             is_good[i] = builder.findings().n_errors() == before;
         }
     for (std::size_t i = 0; i < sections.size(); ++i) read_load(builder, sections[i], names[i], is_good[i]);
+    read_joint_loads(builder);
     check_start(builder);
 }
 

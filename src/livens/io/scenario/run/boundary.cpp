@@ -2,6 +2,8 @@
 // [start], [end] and [body.end]: what is known at the ends of time.
 // Hamilton's law of theory.md, The law, holds with positions or momenta stated once each, at either end.
 // Which ones are stated says `given`; the values stand at the bodies.
+#include <algorithm>
+
 #include "livens/base/text.h"
 #include "livens/dynamics/start/prepared.h"
 #include "livens/dynamics/start/singular.h"
@@ -204,6 +206,22 @@ Model acting_then(const Model& model, const State& state)
     return model.has_events() ? acting_at(model, state.t).model : model;
 }
 
+/// Nobody stands beyond a limit: its spring would throw the joint back.
+void refuse_beyond_limits(const Model& model, const State& state)
+{
+    constexpr double slack = 1e-9;   // m or rad, for limits that are where the joint stands
+    for (const Load& load : model.loads()) {
+        const auto beyond = std::ranges::find(load.readings, "penetration", &LoadReading::name);
+        if (beyond == load.readings.end()) continue;
+        const double d = beyond->value(load_arguments(load, {state.t, Side::right}, state.X, state.V));
+        if (d > slack)
+            throw InputError({"joint-limits", "load[" + load.name + "].limits",
+                              "'" + load.name + "' begins beyond its limits",
+                              "by " + to_text(d, 4) + " " + beyond->unit, "", "",
+                              "place its bodies between them, or state by 'coordinate' what is meant"});
+    }
+}
+
 }   // namespace
 
 void start_as_driven(Builder& builder, Scenario& scenario)
@@ -237,6 +255,7 @@ void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy
         const ConsistentStart closed = prepared.close(model, state, policy);
         // A state at a singular position is judged besides (theory.md, Singular positions).
         if (given == Known::state) refuse_singular_start(model, closed);
+        refuse_beyond_limits(model, closed.start);
     };
     builder.guard("start", [&] { close(boundary.start, boundary.at_start); });
     builder.guard("end", [&] {

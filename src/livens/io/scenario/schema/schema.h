@@ -49,6 +49,7 @@ inline constexpr KeyType integer_or_choice{"a whole number", Form::integer, 0, F
 inline constexpr KeyType number{"a number", Form::number};
 inline constexpr KeyType text{"a string", Form::text};
 inline constexpr KeyType choice{"", Form::choice};
+inline constexpr KeyType interval{"two numbers", Form::row, 2};
 inline constexpr KeyType vector3{"three numbers", Form::row, 3};
 inline constexpr KeyType vector4{"four numbers", Form::row, 4};
 inline constexpr KeyType principal_or_full{"three numbers or three rows of three numbers", Form::row, 3,
@@ -115,6 +116,7 @@ struct Key {
     std::shared_ptr<const Table> child = {};   ///< of a table, or tables
     std::string_view formulas = {};            ///< where formulas stand instead; empty: nowhere
     std::string_view told_by = {};   ///< key of points or files that may say it as well; empty: none
+    bool may_be_infinite = false;   ///< inf and -inf are numbers of it
     /// SI, where the numbers of a list differ: of a matrix row by row, whose diagonal may stand alone.
     Words units = {};
 
@@ -123,6 +125,7 @@ struct Key {
     Key each_in(Words u) && { return units = std::move(u), std::move(*this); }
     Key or_in(std::string_view u) && { return other_unit = u, std::move(*this); }
     Key or_formulas(std::string_view where) && { return formulas = where, std::move(*this); }
+    Key or_infinite() && { return may_be_infinite = true, std::move(*this); }
     Key within(const Range& r) && { return range = r, std::move(*this); }
     Key needed_without(std::string_view other) &&
     {

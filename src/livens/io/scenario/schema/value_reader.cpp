@@ -123,7 +123,8 @@ private:
     bool read_number(const Node& node)
     {
         if (node.kind == NodeKind::integer || node.kind == NodeKind::number) {
-            if (std::isfinite(node.number)) return accept(node, node.number);
+            if (std::isfinite(node.number) || (key_.may_be_infinite && !std::isnan(node.number)))
+                return accept(node, node.number);
             return findings_.error(node.place, "not-finite",
                                    subject() + " must be finite, not " + to_text(node.number));
         }
