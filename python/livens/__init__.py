@@ -27,6 +27,7 @@ from ._export import Comparison, compare
 from ._generated import *   # noqa: F403  the shapes and methods that the schema has, see __all__ there
 from ._generated import Body, Drive, Joint, Load, MethodOptions, Point, Sensor
 from ._functions import BodyState
+from ._import import from_urdf
 from ._included import Added
 from ._load import load
 from ._model import Model
@@ -47,7 +48,7 @@ __all__ = [
     "Place", "Point", "PointSeries",
     "ReadingSeries", "RestBody", "RestJoint", "ResultFileError", "Section", "Sensor", "SensorSeries", "Series",
     "Shape", "SlowWarning", "Solution", "SolveError", "SolveWarning", "StateMatrices", "__version__", "compare",
-    "explain", "load", "load_solution", "momenta", "positions", "solve", "solve_many", "state", "table", "visual",
+    "explain", "from_urdf", "load", "load_solution", "momenta", "positions", "solve", "solve_many", "state", "table", "visual",
 ]
 __all__ += _generated.__all__
 

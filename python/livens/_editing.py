@@ -33,6 +33,8 @@ class Tree(Adders):
 
     _root: Table
     _file: str
+    _home: str   # of an imported model: where paths of its meshes begin
+    _imported: tuple[Diagnostic, ...]
     _text: str | None   # as it was read, as long as nothing was edited
     _functions: dict[str, tuple[str, Callable[..., Any]]]
     _built: dict[Any, tuple[Any, list[Diagnostic]]]
@@ -45,6 +47,8 @@ class Tree(Adders):
     @property
     def _folder(self) -> str:
         """Where its meshes are: beside the file that it came from, else where Python is."""
+        if self._home:
+            return self._home
         return os.path.dirname(self._file) if os.path.isfile(self._file) else ""
 
     def _build(self, overrides: Mapping[str, Any]) -> tuple[Any, list[Diagnostic]]:

@@ -55,8 +55,9 @@ class Model(Tree):
 
     def __init__(self, title: str = "", *, gravity: Any = None) -> None:
         self._root = Table({"format": 1}, user_place())
-        self._file = ""
+        self._file, self._home = "", ""
         self._text = None
+        self._imported = ()
         self._functions = {}
         self._forget()
         if title:
@@ -165,6 +166,15 @@ class Model(Tree):
         """The table ``[end]``."""
         return self._section("end")
 
+    @property
+    def imported(self) -> list[Diagnostic]:
+        """What :func:`from_urdf` did not keep as it was, once for each kind; empty for other models.
+
+        Codes: ``import-lost`` is not kept, ``import-mended`` was changed so that it can be solved, ``import-merged`` is
+        kept as part of something else. Not carried along in files.
+        """
+        return list(self._imported)
+
     def __getitem__(self, name: str) -> Any:
         """The body, point, joint, drive, load or sensor of that name."""
         found = self._named(name)
@@ -204,7 +214,8 @@ class Model(Tree):
         """An independent copy of the model."""
         other = object.__new__(type(self))
         other._root = self._root.copy()
-        other._file, other._text = self._file, self._text
+        other._file, other._home, other._text = self._file, self._home, self._text
+        other._imported = self._imported
         other._functions = dict(self._functions)
         other._forget()
         other._built, other._warned = dict(self._built), self._warned   # what is built is never changed
@@ -225,10 +236,12 @@ class Model(Tree):
 
     def __getstate__(self) -> dict[str, Any]:
         self._refuse_functions("pickled")
-        return {"root": self._root, "file": self._file, "text": self._text}
+        return {"root": self._root, "file": self._file, "home": self._home, "text": self._text,
+                "imported": self._imported}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self._root, self._file, self._text = state["root"], state["file"], state["text"]
+        self._home, self._imported = state["home"], state["imported"]
         self._functions = {}
         self._forget()
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Points with names, models that are added to models, and files that include files."""
+import pathlib
 import pickle
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,7 +10,7 @@ import pytest
 import livens as lv
 
 
-def leg(gravity=None):
+def leg(gravity: Any = None) -> lv.Model:
     m = lv.Model("leg", gravity=gravity)
     thigh = m.add_body("thigh", lv.box(0.05, 0.05, 0.4, mass=2), position=(0, 0, -0.2))
     shin = m.add_body("shin", lv.box(0.04, 0.04, "40 cm", mass=1), position=(0, 0, -0.6), velocity=(0, 0, 0))
@@ -21,7 +23,7 @@ def leg(gravity=None):
     return m
 
 
-def test_points_stand_for_coordinates():
+def test_points_stand_for_coordinates() -> None:
     m = lv.Model("two", gravity=(0, 0, -9.81))
     a = m.add_body("a", lv.box(1, 0.1, 0.1, mass=2), position=(0.5, 0, 0))
     hook = m.add_point("hook", "world", (0, 0, "1 m"))
@@ -54,7 +56,7 @@ def test_points_stand_for_coordinates():
     (lambda m: m.add_force("f", point="tpi", value=(0, 0, 1)), "point-unknown"),
     (lambda m: m.add_force("f", value=(0, 0, 1)), "missing-key"),
 ])
-def test_points_that_are_wrong_are_refused_where_they_are_written(call, code):
+def test_points_that_are_wrong_are_refused_where_they_are_written(call: Any, code: str) -> None:
     m = lv.Model("one")
     m.add_body("a", lv.sphere(0.1, mass=1))
     m.add_point("top", "a", (0, 0, 0.1))
@@ -65,7 +67,7 @@ def test_points_that_are_wrong_are_refused_where_they_are_written(call, code):
     assert error.value.diagnostics[0].file.endswith("test_parts.py")
 
 
-def test_a_model_that_is_added_moves_as_it_did():
+def test_a_model_that_is_added_moves_as_it_did() -> None:
     alone = lv.solve(leg(), 1, elements=40)
     turn = (0.3, -0.4, 0.5)
     m = lv.Model("moved")
@@ -90,7 +92,7 @@ def test_a_model_that_is_added_moves_as_it_did():
     assert np.abs(wrong["left shin"].position - moved["left shin"].position).max() > 0.1
 
 
-def test_models_are_added_and_written():
+def test_models_are_added_and_written() -> None:
     m = lv.Model("walker", gravity=(0, 0, -9.81))
     left = m.add(leg(), "left ", position=(0, "10 cm", 0))
     right = m.add(leg((0, 0, -9.81)), "right ", position=(0, -0.1, 0), rotation=np.diag((-1.0, -1.0, 1.0)))
@@ -108,7 +110,7 @@ def test_models_are_added_and_written():
     assert lv.solve(outer, 0.1, elements=4)["b.left foot"].position[0].round(9).tolist() == [3.0, 0.1, -0.8]
 
 
-def test_what_cannot_be_added_changes_nothing(tmp_path):
+def test_what_cannot_be_added_changes_nothing(tmp_path: pathlib.Path) -> None:
     m = lv.Model("m", gravity=(0, 0, -9.81))
     m.add(leg(), "left ")
     before = m.copy()
@@ -135,7 +137,7 @@ def test_what_cannot_be_added_changes_nothing(tmp_path):
     assert m == before
 
 
-def test_files_include_files(tmp_path):
+def test_files_include_files(tmp_path: pathlib.Path) -> None:
     (tmp_path / "parts").mkdir()
     leg().to_toml(tmp_path / "parts" / "leg.toml")
     (tmp_path / "parts" / "leg.toml").write_text(leg().to_toml() + "[time]\nend = 1\n")

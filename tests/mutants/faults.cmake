@@ -1051,6 +1051,14 @@ livens_mutant(NAME limits_that_pull
               TESTS_OF unit_io
               MUST_FAIL JointLimits.NeverPullAndStoreWhatTheyTake)
 
+# A joint that stands at a limit is thrown about by rounding.
+livens_mutant(NAME limits_to_the_last_digit
+              FILE multibody/loads/joint_spring.cpp
+              OLD [[return 1e-12 * std::max(1.0, std::abs(limit));]]
+              NEW [[return 0 * limit;]]
+              TESTS_OF unit_io
+              MUST_FAIL JointLimits.NeverPullAndStoreWhatTheyTake)
+
 # What a limit dissipates is not told.
 livens_mutant(NAME limits_without_loss
               FILE multibody/loads/joint_spring.cpp
@@ -1059,11 +1067,11 @@ livens_mutant(NAME limits_without_loss
               TESTS_OF properties
               MUST_FAIL LoadKit/EveryLoad.Passes/joint_spring_limits_of_an_angle)
 
-# What hangs on a joint is left out of the inertia that its limits are made for.
+# What hangs on a joint by others is left out of the inertia that its limits are made for.
 livens_mutant(NAME limits_for_one_body
-              FILE io/scenario/loads/joint_limits.cpp
-              OLD [[if (std::ranges::find(found, next) == found.end()) found.push_back(next);]]
-              NEW [[;]]
+              FILE dynamics/instant/inertia_along.cpp
+              OLD [[row.drives.empty(); }))]]
+              NEW [[row.drives.empty(); }) && &joint == &model.joints()[0])]]
               TESTS_OF unit_io
               MUST_FAIL JointLimits.HaveTheirSpringsFromTheBodies)
 

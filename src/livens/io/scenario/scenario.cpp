@@ -4,15 +4,13 @@
 // are not tried, so that one mistake is told once.
 #include "livens/io/scenario.h"
 
-#include <cerrno>
 #include <cmath>
-#include <fstream>
-#include <new>
 
 #include "livens/base/text.h"
 #include "livens/dynamics/start/prepared.h"
 #include "livens/io/scenario/assembly.h"
 #include "livens/io/scenario/run/run.h"
+#include "livens/io/scenario/text/reading.h"
 #include "livens/io/scenario/text/tree.h"
 #include "livens/spacetime/solve.h"
 
@@ -146,49 +144,6 @@ void parse(Scenario& scenario, const MeshSource& meshes, const ParameterValues& 
     if (!scan(text, findings)) return;
     const std::optional<Node> root = parse_toml(text, findings);
     if (root) build(*root, TreePart::whole, meshes, values, scenario, findings);
-}
-
-/// Reads a file to its end or to one byte over the limit. False after an error.
-bool read_text(const std::filesystem::path& file, std::string& text, Findings& findings)
-{
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status)) return findings.error({}, "io-not-found", "there is no such file");
-    if (std::filesystem::is_directory(status))
-        return findings.error({}, "io-directory", "this is a directory, not a file");
-    // The size is asked before anything is read, and counted again while reading, as the file may grow.
-    const bool is_regular = std::filesystem::is_regular_file(status);
-    const std::uintmax_t size = is_regular ? std::filesystem::file_size(file, error) : 0;
-    if (!error && size > max_scenario_bytes)
-        return findings.error({}, "resource-limit",
-                              "the file has " + std::to_string(size) + " bytes, more than " +
-                                  std::to_string(max_scenario_bytes));
-    errno = 0;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream.is_open() && errno == ENOMEM) throw std::bad_alloc();   // of the stream's own
-    constexpr std::size_t portion = 1u << 16;
-    while (stream && text.size() <= max_scenario_bytes) {   // pipes have no size to ask for
-        const std::size_t before = text.size();
-        text.resize(before + portion);
-        stream.read(text.data() + before, portion);
-        text.resize(before + static_cast<std::size_t>(stream.gcount()));
-    }
-    return (stream.is_open() && !stream.bad()) ||
-           findings.error({}, "io-unreadable", "the file cannot be read");
-}
-
-/// Runs `work` so that nothing is thrown, but std::bad_alloc where not even a finding has room.
-template <class Work>
-void shield(Findings& findings, Work work)
-{
-    try {
-        work();
-    } catch (const std::bad_alloc&) {
-        findings.error({}, "resource-limit", "there is not enough memory to read this scenario");
-    } catch (const std::exception& e) {
-        // Whoever embeds the reader gets findings and no exception, even of a fault of the reader itself.
-        findings.error({}, "internal", std::string("this should not happen: ") + e.what());
-    }
 }
 
 }   // namespace

@@ -68,13 +68,16 @@ struct AtLimit {
     }
 };
 
+/// A joint that stands at a limit is not beyond it by what rounding makes of it: springs begin this far out.
+double rounding_at(double limit) { return 1e-12 * std::max(1.0, std::abs(limit)); }
+
 std::vector<AtLimit> springs_at(const JointLimits& limits)
 {
     std::vector<AtLimit> all;
     if (limits.stiffness > 0 && std::isfinite(limits.low))
-        all.push_back({limits.low, -1, limits.stiffness, limits.damping});
+        all.push_back({limits.low - rounding_at(limits.low), -1, limits.stiffness, limits.damping});
     if (limits.stiffness > 0 && std::isfinite(limits.high))
-        all.push_back({limits.high, 1, limits.stiffness, limits.damping});
+        all.push_back({limits.high + rounding_at(limits.high), 1, limits.stiffness, limits.damping});
     return all;
 }
 

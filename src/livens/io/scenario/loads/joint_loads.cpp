@@ -2,6 +2,7 @@
 // Loads that a [[joint]] states itself, along its coordinate or, of two, in a table for each: one load of the
 // model for each coordinate, made like a [[load]] of type spring on the joint, so that energies, sensors and
 // results know it.
+#include "livens/dynamics/instant/inertia_along.h"
 #include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/loads/load_makers.h"
 
@@ -14,6 +15,13 @@ struct AlongCoordinate {
     const Section* keys;      ///< of the joint, or of its table for the coordinate
     std::string load;         ///< name of what is made of them
     std::string_view which;   ///< coordinate; empty: the joint has but one
+    int joint = -1;
+    double inertia = 0;   ///< that a force along the coordinate moves, where somebody wants to know
+
+    const NamedCoordinate& coordinate(const Joint& of) const
+    {
+        return which.empty() ? of.coordinates.front() : *find_coordinate(of, which);
+    }
 };
 
 bool has_loads(const Section& keys)
@@ -65,11 +73,10 @@ Load make_joint_load(Builder& builder, const AlongCoordinate& part, const Joint&
     if (joint.coordinates.empty())
         return rotational_damper(part.load, joint.first, joint.second, keys.number("damping"),
                                  places(builder));
-    const NamedCoordinate& coordinate =
-        part.which.empty() ? joint.coordinates.front() : *find_coordinate(joint, part.which);
+    const NamedCoordinate& coordinate = part.coordinate(joint);
     const JointSpring law{keys.number("stiffness"), keys.number("damping"), keys.number("rest")};
     JointLimits limits;
-    if (keys.has("limits")) limits = read_limits(builder, keys, joint, coordinate, path);
+    if (keys.has("limits")) limits = read_limits(builder, keys, joint, coordinate, part.inertia, path);
     if (keys.has("limits") && !ends_at_bends(builder))
         builder.findings().warning(
             keys.place("limits"), "spring-kink",
@@ -78,6 +85,22 @@ Load make_joint_load(Builder& builder, const AlongCoordinate& part, const Joint&
              "estimated error may miss it as well",
              "take the family lobatto"});
     return joint_spring(part.load, coordinate, law, limits, places(builder));
+}
+
+/// Of limits whose stiffness is to follow from the bodies.
+void find_inertias(const Model& model, std::vector<AlongCoordinate>& parts)
+{
+    std::vector<JointCoordinate> wanted;
+    std::vector<AlongCoordinate*> owners;
+    for (AlongCoordinate& part : parts)
+        if (part.keys->takes("limits") && part.keys->has("limits") && !part.keys->has("limit_stiffness")) {
+            wanted.push_back(
+                part.coordinate(model.joints()[static_cast<std::size_t>(part.joint)]).coordinate);
+            owners.push_back(&part);
+        }
+    if (wanted.empty()) return;
+    const std::vector<double> inertias = inertias_along(model, wanted);
+    for (std::size_t k = 0; k < owners.size(); ++k) owners[k]->inertia = inertias[k];
 }
 
 }   // namespace
@@ -93,20 +116,24 @@ std::vector<std::string> names_of_joint_loads(const Builder& builder)
 
 void read_joint_loads(Builder& builder)
 {
+    const std::vector<Joint>& joints = builder.model().joints();
+    std::vector<AlongCoordinate> parts;
     for (const Section& section : builder.top().sections("joint"))
-        for (const AlongCoordinate& part : loaded_parts(section)) {
+        for (AlongCoordinate& part : loaded_parts(section)) {
             if (!check_joint_loads(section, *part.keys) || !has_loads(*part.keys)) continue;
-            const int joint = builder.model().find_joint(name_of_joint(section));
-            if (joint < 0) continue;   // told already
-            const std::string path = "load[" + part.load + "]";
-            builder.remember(path, *part.keys);
-            builder.guard(path, [&] {
-                Load load = make_joint_load(builder, part,
-                                            builder.model().joints()[static_cast<std::size_t>(joint)], path);
-                load.type = "joint";
-                builder.model().add_load(std::move(load));
-            });
+            part.joint = builder.model().find_joint(name_of_joint(section));
+            if (part.joint >= 0) parts.push_back(std::move(part));   // else told already
         }
+    find_inertias(builder.model(), parts);
+    for (const AlongCoordinate& part : parts) {
+        const std::string path = "load[" + part.load + "]";
+        builder.remember(path, *part.keys);
+        builder.guard(path, [&] {
+            Load load = make_joint_load(builder, part, joints[static_cast<std::size_t>(part.joint)], path);
+            load.type = "joint";
+            builder.model().add_load(std::move(load));
+        });
+    }
 }
 
 }   // namespace livens::inline io_internal

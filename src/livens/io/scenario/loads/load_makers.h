@@ -24,9 +24,10 @@ std::vector<std::string> names_of_joint_loads(const Builder& builder);
 /// Adds these to the model; reports all it finds.
 void read_joint_loads(Builder& builder);
 
-/// `limits` of a joint, with what their springs are by default. Throws InputError `joint-limits` at path.
+/// `limits` of a joint, with what their springs are by default where a force along the coordinate moves this
+/// inertia. Throws InputError `joint-limits` at path.
 JointLimits read_limits(const Builder& builder, const Section& keys, const Joint& joint,
-                        const NamedCoordinate& coordinate, const std::string& path);
+                        const NamedCoordinate& coordinate, double inertia, const std::string& path);
 
 // False after an error.
 bool check_value(const Section& load);
