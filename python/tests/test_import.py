@@ -57,7 +57,7 @@ def test_limits_are_kept_or_left_out(tmp_path: pathlib.Path) -> None:
               for limits in STOPS}
     assert swings["stop"].peak("hinge.angle").value < 1.05 < swings["ignore"].peak("hinge.angle").value
     beyond = lv.from_urdf(file, at={"hinge": 1.5})
-    assert [d.line for d in beyond.imported if "begin beyond them: 1 joint ('hinge')" in d.message] == [5]
+    assert [d.line for d in beyond.imported if "beyond which a joint begins: 1 joint ('hinge')" in d.message] == [5]
     with pytest.raises(lv.InputError, match="limits= is 'stop' or 'ignore'"):
         lv.from_urdf(file, limits="none")   # type: ignore[arg-type]
 

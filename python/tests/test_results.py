@@ -369,7 +369,7 @@ def test_what_acts_along_a_coordinate_is_its_effort() -> None:
     assert np.allclose(np.linalg.norm(np.stack([sol.loads["ball"][f"torque_{x}"] for x in "xyz"], axis=1), axis=1),
                        0.2 * np.linalg.norm(w, axis=1), atol=1e-12)
     assert not hasattr(sol["ball"], "effort") and "effort" in hinge.arrays()
-    assert sol.peak("hinge.effort").value == pytest.approx(np.abs(hinge.effort).max(), rel=0.01)
+    assert np.abs(hinge.effort).max() <= -sol.peak("hinge.effort").value < 1.05 * np.abs(hinge.effort).max()
 
 
 def test_a_drive_holds_with_its_effort_at_rest() -> None:

@@ -157,11 +157,13 @@ TEST(Urdf, DampingAndLimitsAreThoseOfTheJoint)
 
 TEST(Urdf, LimitsThatCannotActAreToldOrLeftOutAsAsked)
 {
-    const auto lost = [](const Options& options, const std::string& text, const std::string& words) {
+    const auto lost = [](const Options& options, const std::string& text, const std::string& words,
+                         const std::string& kept = "") {
         const UrdfResult result = read_robot(text, options);
         EXPECT_TRUE(result.scenario) << told(result);
         EXPECT_EQ(n_told(result, "import-lost", words), 1) << told(result);
-        EXPECT_EQ(result.toml.find("limits = "), std::string::npos) << result.toml;
+        EXPECT_EQ(result.toml.find("limits = ") == std::string::npos, kept.empty()) << result.toml;
+        EXPECT_NE(result.toml.find(kept), std::string::npos) << result.toml;
         Options strict = options;
         strict.is_strict = true;
         EXPECT_EQ(n_told(read_robot(text, strict), "import-lost", words), 1);
@@ -170,7 +172,11 @@ TEST(Urdf, LimitsThatCannotActAreToldOrLeftOutAsAsked)
     none.limits = Options::Limits::ignore;
     lost(none, arm(), "joint limits are not kept: 1 joint ('shoulder')");
     beyond.at = {{"shoulder", 1.01}};
-    lost(beyond, arm(), "limits are not kept of joints that begin beyond them: 1 joint ('shoulder')");
+    const std::string at_start =
+        "limits are not kept at or beyond which a joint begins: 1 joint ('shoulder')";
+    lost(beyond, arm(), at_start, "limits = [-1.0, inf]");
+    beyond.at = {{"shoulder", -1}};
+    lost(beyond, arm(), at_start, "limits = [-inf, 1.0]");
     std::string text = arm();
     text.replace(text.find("lower='-1'"), 10, "lower='1' ");
     lost({}, text, "limits are not kept whose lower is not below the upper: 1 joint ('shoulder')");

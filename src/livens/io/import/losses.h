@@ -30,13 +30,13 @@ inline constexpr LossKind limits{
     true};
 inline constexpr LossKind limits_order{
     "import-lost", "joint", "joints", "limits are not kept whose lower is not below the upper", "", true};
-inline constexpr LossKind limits_outside{"import-lost",
-                                         "joint",
-                                         "joints",
-                                         "limits are not kept of joints that begin beyond them",
-                                         "state by 'at' where the joint begins",
-                                         true,
-                                         true};
+inline constexpr LossKind limits_at_start{"import-lost",
+                                          "joint",
+                                          "joints",
+                                          "limits are not kept at or beyond which a joint begins",
+                                          "state by 'at' where the joint begins",
+                                          true,
+                                          true};
 inline constexpr LossKind bounds{"import-lost", "joint", "joints", "effort and velocity limits are not kept",
                                  "they apply to motors, which a URDF does not have"};
 inline constexpr LossKind friction{"import-lost",

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace livens::inline io_internal {
 
@@ -82,8 +83,8 @@ TableMaker UrdfJoints::joint(const PlacedJoint& placed)
     return table;
 }
 
-/// What the joint does along its coordinate. A start beyond a limit would be thrown back, so that such limits
-/// are told instead.
+/// What the joint does along its coordinate. A start beyond a limit would be thrown back, and one at it would
+/// rest on a stiff spring, as knees do that are drawn straight: such an end is told instead.
 void UrdfJoints::add_loads(TableMaker& table, const PlacedJoint& placed)
 {
     const UrdfJoint& joint = file_.joints[placed.joint];
@@ -96,16 +97,15 @@ void UrdfJoints::add_loads(TableMaker& table, const PlacedJoint& placed)
     const UrdfLimit& limit = *joint.limit;
     if (limit.effort > 0 || limit.velocity > 0) losses_.add(losses::bounds, limit.place, name);
     if (joint.type == UrdfJoint::Type::continuous || !joint.has_coordinate() || !limit.lower) return;
-    constexpr double slack = 1e-9;   // rad or m, of a start at a limit that was computed
-    const double low = *limit.lower, high = *limit.upper, q = placed.coordinate;
-    if (options_.limits == UrdfOptions::Limits::ignore)
-        losses_.add(losses::limits, limit.place, name);
-    else if (!(low < high))
-        losses_.add(losses::limits_order, limit.place, name);
-    else if (q < low - slack || q > high + slack)
-        losses_.add(losses::limits_outside, limit.place, name);
-    else
-        table.numbers("limits", std::array{low, high});
+    if (options_.limits == UrdfOptions::Limits::ignore) return losses_.add(losses::limits, limit.place, name);
+    if (!(*limit.lower < *limit.upper)) return losses_.add(losses::limits_order, limit.place, name);
+    constexpr double slack = 1e-6;   // rad or m, of a start at a limit that was computed
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const double q = placed.coordinate;
+    const double low = q > *limit.lower + slack ? *limit.lower : -infinity;
+    const double high = q < *limit.upper - slack ? *limit.upper : infinity;
+    if (low == -infinity || high == infinity) losses_.add(losses::limits_at_start, limit.place, name);
+    if (low > -infinity || high < infinity) table.numbers("limits", std::array{low, high});
 }
 
 /// A joint that follows another one: coordinate = multiplier times the leader's + what it is at the start.
