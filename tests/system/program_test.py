@@ -376,9 +376,9 @@ output = 0.25
         self.expect(0, "solve", "hinge.toml", "-o", "run.nc", "--csv", "run.csv")
         with (self.folder / "run.csv").open(newline="") as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual(list(rows[0])[-11:], [
+        self.assertEqual(list(rows[0])[-12:], [
             "hinge.angle [rad]", "hinge.angle_rate [rad/s]", "hinge.angle_acceleration [rad/s^2]", "hinge.force.x [N]", "hinge.force.y [N]", "hinge.force.z [N]",
-            "hinge.torque.x [N m]", "hinge.torque.y [N m]", "hinge.torque.z [N m]", "effort.effort [N m]", "effort.power [W]"])
+            "hinge.torque.x [N m]", "hinge.torque.y [N m]", "hinge.torque.z [N m]", "spring.effort [N m]", "effort.effort [N m]", "effort.power [W]"])
         for row in rows:
             at = json.loads(self.expect(0, "sample", "run.nc", "--joint", "hinge", f"--at={row['t [s]']}", "--json").out)
             self.assertEqual(float(row["hinge.angle [rad]"]), at["angle"])
@@ -732,7 +732,7 @@ degree = 6
                    'joint = "slide"\nharmonic = { amplitude = 0.2, frequency = 1 }\n[[load]]\nname = "cutting"\n'
                    'type = "force"\nbody = "ram"\nexpression = ["-500*step(slide.displacement_rate)", "0", "0"]\n')
         self.expect(0, "solve", "jump.toml", "-o", "jump.nc", "-q")
-        peaks = json.loads(self.expect(0, "peaks", "jump.nc", "motor.drive_force", "--json").out)["peaks"][0]
+        peaks = json.loads(self.expect(0, "peaks", "jump.nc", "motor.effort", "--json").out)["peaks"][0]
         inertia = 12 * 0.2 * (2 * math.pi) ** 2
         self.assertAlmostEqual(peaks["max"]["value"], 500 + inertia, delta=1e-4)
         self.assertAlmostEqual(peaks["min"]["value"], -inertia, delta=1e-4)
