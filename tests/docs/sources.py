@@ -103,7 +103,7 @@ TIES = [
     ("and $3\\cdot10^{15}$ kg: velocities right to «1e-14»", "tests/unit/dynamics/projection.cpp", r"momentum / sum, (1e-14) \* momentum"),
     ("those with pivots above «1e-4»; if that gets stuck, «1e-7», then «1e-9»", f"{DYNAMICS}/rows/projection.cpp",
      r"threshold : \{([^,]+), ([^,]+), ([^}]+)\}"),
-    ("less what earlier ones take, above «1e-6»", f"{DYNAMICS}/start/start_coordinates.cpp", r"held_below = ([^;]+);"),
+    ("less what earlier ones take, above «1e-6»", f"{DYNAMICS}/start/free_directions.h", r"least_part = ([^;]+);"),
     ("steps of at most «0.1» rad or «0.1» lengths", f"{DYNAMICS}/start/start_coordinates.cpp", r"(?=.*?step = ([^;]+);).*?step = ([^;]+);"),
     ("Equal rows are scaled down by up to «1e-3»", f"{DYNAMICS}/rows/rank.cpp", r"favour\(.*?1 - (\S+) \*"),
     ("A row that adds less than «1e-3» there", f"{DYNAMICS}/rows/rank.cpp", r"well_held = ([^;]+);"),

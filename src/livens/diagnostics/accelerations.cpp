@@ -15,13 +15,25 @@
 
 namespace livens {
 
+namespace {
+
+/// Independent rows where most are: where joints lose rank nothing tells which are independent elsewhere.
+std::vector<int> most_rows(const Model& acting, std::span<const State> places)
+{
+    std::vector<int> most;
+    for (const State& state : places) {
+        RowRank rank = row_rank(frozen(acting, {state.t}), state.X, all_rows(acting));
+        if (rank.independent.size() > most.size()) most = std::move(rank.independent);
+    }
+    return most;
+}
+
+}   // namespace
+
 /// The joints that act together, and what solves at an instant with them.
 struct Accelerations::Phase {
-    Phase(const Model& all, double t, const std::vector<Matrix34>& X)
-        : acting(acting_at(all, t)), tables(acting.model, row_rank(frozen(acting.model, {t}), X,
-                                                                   all_rows(acting.model))
-                                                              .independent),
-          instant(tables)
+    Phase(const Model& all, double t, std::span<const State> places)
+        : acting(acting_at(all, t)), tables(acting.model, most_rows(acting.model, places)), instant(tables)
     {
         solved.resize(tables);
     }
@@ -89,7 +101,15 @@ Accelerations::Phase& Accelerations::phase_at(double t) const
 {
     const auto after = std::ranges::upper_bound(events_, t);
     std::shared_ptr<Phase>& phase = (*phases_)[static_cast<std::size_t>(after - events_.begin())];
-    if (phase == nullptr) phase = std::make_shared<Phase>(model_, t, sample_state(motion_, t).X);
+    if (phase != nullptr) return *phase;
+    std::vector<State> places{sample_state(motion_, t)};
+    if (motion_.n_elements() > 0) {
+        const int element = motion_.mesh.element_at(t);
+        for (const double s : {0.0, 0.381966})
+            places.push_back(
+                sample_state(motion_, motion_.mesh.ends[element] + s * motion_.mesh.length(element)));
+    }
+    phase = std::make_shared<Phase>(model_, t, places);
     return *phase;
 }
 

@@ -460,7 +460,7 @@ TEST(ScenarioCodes, WarningsLeaveTheScenarioAlone)
         "expression = \"-max(w, 0)\"\n\n[time]\nbreaks = \"ignore\"");
     const std::string hurried =
         replaced(replaced(valid_scenario, "name = \"shoulder\"", "name = \"shoulder\"\nrate = 1"),
-                 "name = \"lower\"", "name = \"lower\"\nvelocity = [0, 0, 1]");
+                 "name = \"lower\"", "name = \"lower\"\nvelocity = [0, 0, 1]\nangular_velocity = [0, 0, 0]");
     const std::string in_mm = replaced(valid_scenario, "-9.81]", "-9806.65]");
     for (const auto& [code, text] :
          {std::pair("gravity-unit", in_mm), std::pair("expression-kink", kinked),
