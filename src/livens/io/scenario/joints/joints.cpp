@@ -355,7 +355,7 @@ Table joint_table()
              "only.",
              "s"},
          Key{"rotor_inertia", types::later,
-             "a flywheel on the world and a gear of ratio 1 (slider: rack_and_pinion) have this effect"}}}
+             "a point on a line of the world and a rack_and_pinion have this effect: docs/howto/motors.md"}}}
         .with_kinds("type", std::move(all));
 }
 

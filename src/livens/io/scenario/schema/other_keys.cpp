@@ -156,9 +156,8 @@ constexpr OtherKey other_keys[] = {
      "jointrange",
      "limits", "limits = [\"-90 deg\", \"90 deg\"], of the coordinate; beyond them acts a stiff spring"},
     {"[[joint]]", "", "armature rotor reflectedinertia motorinertia gearedinertia", "",
-     "a rotor that turns with the joint is a flywheel: a body on a revolute joint to the world, and a joint "
-     "of type "
-     "\"gear\" with the 'ratio' of the gearbox"},
+     "a point of this mass on a line of the world, bound to the joint by a \"rack_and_pinion\" of radius 1, "
+     "has this effect: docs/howto/motors.md"},
     {"[[joint]]", "", "limitspring limitk stopstiffness contactstiffness", "limit_stiffness"},
     {"[[joint]]", "", "limitc stopdamping contactdamping dissipation", "limit_damping"},
     {"[[joint]]", "",
