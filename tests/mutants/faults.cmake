@@ -1151,6 +1151,33 @@ livens_mutant(NAME extremes_are_those_of_samples
               NEW [[return {{place.value, place.at}, 0};]]
               TESTS_OF unit_spacetime
               MUST_FAIL Extremes.AreThoseOfTheFormula)
+# States between element ends that are left where polynomials have them, and multipliers of nodes there.
+livens_mutant(NAME states_between_ends_stay_open
+              FILE diagnostics/accelerations.cpp
+              OLD [[instant.close(solved);]]
+              NEW [[(void)0;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Accelerations.StandOnTheJointsBetweenElementEnds)
+livens_mutant(NAME forces_between_ends_of_nodes
+              FILE diagnostics/joint_samples.cpp
+              OLD [[if (end < 0 && !motion.end_multipliers.empty() && !motion.accelerations.empty()) {]]
+              NEW [[if (end < -1 && !motion.accelerations.empty()) {]]
+              TESTS_OF reference
+              MUST_FAIL Driven.ForcesBetweenElementEndsAreThoseOfTheFormula)
+# Series of the page do not follow a steep law, and nobody is told.
+livens_mutant(NAME series_are_not_divided
+              FILE io/report/curves.cpp
+              OLD [[if (n_halved == 0) return true;]]
+              NEW [[if (n_halved < columns.size() * n) return true;]]
+              TESTS_OF unit_io
+              MUST_FAIL Report.SeriesFollowSteepLaws)
+# A base that is stated at rest is moved by a leg that swings.
+livens_mutant(NAME stated_velocities_not_kept
+              FILE io/scenario/run/start.cpp
+              OLD [[if (said.of_place || said.of_turn) stated.velocities.push_back(said);]]
+              NEW [[(void)said;]]
+              TESTS_OF unit_io
+              MUST_FAIL StatedVelocities.AreKeptWhereARateMovesTheStart)
 livens_mutant(NAME accelerations_forget_what_turns
               FILE diagnostics/accelerations.cpp
               OLD [[A[12 * b + i] + phase.instant.centripetal()[12 * b + i];]]

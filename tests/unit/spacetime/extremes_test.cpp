@@ -104,6 +104,37 @@ TEST(Quantities, OfPointsAndInAxesOfBodiesAreThoseOfTheWorldTurned)
         EXPECT_EQ(q.is_on_request, q.axes != world || q.of == QuantityOf::point) << q.name();
 }
 
+TEST(Accelerations, StandOnTheJointsBetweenElementEnds)
+{
+    Pendulum pendulum;
+    const Motion motion =
+        solve(pendulum.model, {{pendulum.model.start()}}, make_time_mesh(0, 3, 12), Lobatto{3}).motion;
+    const Accelerations accelerations(pendulum.model, motion);
+    double raw_length = 0, raw_rate = 0;
+    for (const double t : {0.07, 0.61, 1.33, 2.9}) {
+        const State raw = sample_state(motion, t), held = accelerations.on_joints(raw);
+        const auto place = [](const State& s) { return s.X[0].column(0); };
+        const auto rate = [&](const State& s) { return dot(place(s), s.V[0].column(0)); };
+        raw_length = std::max(raw_length, std::abs(norm(place(raw)) - 1));
+        raw_rate = std::max(raw_rate, std::abs(rate(raw)));
+        EXPECT_NEAR(norm(place(held)), 1, 1e-12) << t;
+        EXPECT_NEAR(rate(held), 0, 1e-13) << t;
+        EXPECT_LT(norm(place(held) - place(raw)), 2 * std::abs(norm(place(raw)) - 1) + 1e-12)
+            << "the nearest";
+        // What accelerates it holds the rod: x . x'' + |x'|^2 = 0, and belongs to the reaction there.
+        const AcceleratedState at = accelerations.at(raw);
+        const Vector3 a = at.A[0].column(0), v = held.V[0].column(0);
+        EXPECT_NEAR(dot(place(held), a) + dot(v, v), 0, 1e-10) << t;
+        const Vector3 force = sample_joints(pendulum.model, motion, t)[0].right.force;
+        EXPECT_LT(norm(2.0 * a - force - Vector3{0, 0, -2 * 9.81}), 1e-10) << t;
+    }
+    EXPECT_GT(raw_length, 1e-6) << "negative control";
+    EXPECT_GT(raw_rate, 1e-5) << "negative control";
+    // At ends the motion's own state stands.
+    const State end = sample_state(motion, motion.mesh.ends[3]);
+    EXPECT_EQ(accelerations.on_joints(end).X[0], end.X[0]);
+}
+
 TEST(DenseInstants, KeepElementEndsAndResolveElements)
 {
     const Pendulum pendulum;
