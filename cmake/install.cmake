@@ -12,7 +12,7 @@ if(LIVENS_UMFPACK)
     list(APPEND libraries livens_umfpack)
 endif()
 if(LIVENS_BUILD_PROGRAM)
-    list(APPEND libraries livens_io livens_zlib)
+    list(APPEND libraries livens_io livens_zlib livens_tinyxml2)
     add_dependencies(livens ${libraries})   # a build of the program alone can be installed
     install(TARGETS livens RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} ${program})
     # Where the shells and man look without being told.

@@ -30,7 +30,7 @@ file; the program solves it to the accuracy that is asked for, says how far
 the answer is off, writes it as NetCDF, and shows it as a page for browsers.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME liblivens-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "g++ (>= 4:12), zlib1g-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "g++ (>= 4:12), zlib1g-dev, libtinyxml2-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "livens, cmake, pkgconf")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "livens computes the motion of rigid bodies that are tied together by joints,
 with finite elements in time and an estimate of the error. Here are its

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     Floats: TypeAlias = npt.NDArray[np.float64]
 
 End: TypeAlias = "Union[str, Entry, tuple[Union[str, Entry], Vector]]"
-"""A body by name or handle, or with a point of it: ``("rod", (0.5, 0, 0))``."""
+"""A body by name or handle, or with a point of it: ``("rod", (0.5, 0, 0))``; or a named point."""
 '''
 WRITTEN = {FLAG: "bool", TRUTH: "bool", INTEGER: "int", NUMBER: "Number", TEXT: "str", NAMES: "Sequence[str | Entry]",
            NAMED_TEXTS: "Mapping[str, str]", ROW: "Vector", ROWS: "Matrix", TABLE: "Mapping[str, Any]",
@@ -37,6 +37,7 @@ OF_SOLIDS = ("density_field",)
 READ = {FLAG: "bool", TRUTH: "bool", INTEGER: "int", NUMBER: "float", TEXT: "str", ROW: "Floats", ROWS: "Floats",
         CHOICE: "str"}
 REFERENCES = {"body": "str | Entry", "joint": "str | Entry", "load": "str | Entry"}
+NAMED = ("point", "points", "at")   # what may be the name of a point
 PAIRS = ("between", "joints")
 BODY_EXAMPLE = """
         >>> import livens as lv
@@ -72,6 +73,7 @@ EXAMPLES = {   # calls that stand for themselves, after SETUP
     "attraction": 'm.add_attraction("planet", a, mu=3.986e14, point=(0, 0, -6.4e6))',
     "bushing": 'm.add_bushing("mount", a, b, at=(1, 0, 0), stiffness=[1e5, 1e5, 1e5, 50, 50, 50])',
     "point": 'm.add_point_sensor("tip", b, point=(0.5, 0, 0))',
+    "": 'tip = m.add_point("tip", b, (0.5, 0, 0))',
     "energy": 'm.add_energy_sensor("energy of a", a)',
     "relative": 'm.add_relative_sensor("gap", ("world", (0, 0, 0)), (a, (0.5, 0, 0)))',
     "distance": 'm.add_distance_drive("pull", "world", a, value=0.5)',
@@ -91,6 +93,8 @@ def written(key):
             types.append("Literal[" + ", ".join(f'"{word}"' for word in key["choices"]) + "]")
         elif form == TEXT and key["name"] in REFERENCES:
             types.append(REFERENCES[key["name"]])
+        elif form == TEXT and key["name"] in NAMED:
+            types.append("str | Entry")
         else:
             types.append(WRITTEN[form])
     if key["name"] == "shape":
@@ -130,7 +134,9 @@ def sentence(text):
 
 
 def adder_name(kind, word):
-    return f"add_{word}" if kind in ("body", "joint", "load") else f"add_{word}_{kind}"
+    if not word:
+        return f"add_{kind}"
+    return f"add_{word}" if kind in ("joint", "load") else f"add_{word}_{kind}"
 
 
 class Writer:
@@ -151,7 +157,7 @@ class Writer:
         return [key for key in table["keys"] + own if key["name"] != table["chooser"] and key["form"] != NONE]
 
     def handles(self):
-        for kind in ("body", "joint", "drive", "load", "sensor"):
+        for kind in ("body", "point", "joint", "drive", "load", "sensor"):
             table = self.children[kind]
             self.line(f"\n\nclass {kind.capitalize()}(Entry):")
             self.line(wrapped(f'"""A {kind} of a model. {table["doc"]}', "    "))
@@ -176,7 +182,7 @@ class Writer:
     def adder(self, kind, table, word, doc):
         keys = self.keys(table, word)
         names = [key["name"] for key in keys]
-        front = [f"name: str{'' if kind in ('body', 'sensor') else ' | None'}"]
+        front = [f"name: str{'' if kind in ('body', 'point', 'sensor') else ' | None'}"]
         pair = next((p for p in PAIRS if p in names), None)
         one = next((key for key in keys if key["name"] in REFERENCES and key["required"]), None)
         if kind == "body":
@@ -184,16 +190,19 @@ class Writer:
         elif pair is not None:
             front += ["first: End | None = None", "second: End | None = None"]   # the schema says what is missing
         elif one is not None:
-            front.append(f"{one['name']}: {REFERENCES[one['name']]}")
+            front.append(f"{one['name']}: {REFERENCES[one['name']]}" + (" | None = None" if one["told_by"] else ""))
         in_front = {"name", "shape" if kind == "body" else "", one["name"] if one is not None and pair is None else ""}
+        behind = [key for key in keys if kind == "point" and key["name"] == "position"]
+        front += [f"{key['name']}: {written(key)} | None = None" for key in behind]
+        in_front |= {key["name"] for key in behind}
         rest = [key for key in keys if key["name"] not in in_front]
-        method = "add_body" if kind == "body" else adder_name(kind, word)
+        method = adder_name(kind, word)
         self.line(f'\n    @open_keys("{kind}", "{word}")')
         self.line(f"    def {method}(self, {', '.join(front)}{', *,' if rest else ''}")
         for i, key in enumerate(rest):
             self.line(f"            {name_of(key)}: {written(key)} | None = None{',' if i + 1 < len(rest) else ''}")
         self.line(f"            ) -> {kind.capitalize()}:")
-        called = word.replace("_", " ") + (f" {kind}" if kind in ("drive", "sensor") else "")
+        called = (word or kind).replace("_", " ") + (f" {kind}" if kind in ("drive", "sensor") else "")
         article = "an" if called[:1] in "aeio" else "a"
         head = "Adds a body. " + table["doc"] if kind == "body" else f"Adds {article} {called}: {doc.strip().rstrip('.')}."
         self.line(wrapped(f'"""{head}', "        "))
@@ -202,7 +211,7 @@ class Writer:
         if kind == "body":
             self.line(wrapped("shape: Solid of constant density, for mass and inertia: lv.box(..), ..", " " * 12, " " * 16))
         if pair == "between":
-            self.line(wrapped("first: A body or \"world\", or (body, point) with a point (m) in its coordinates.",
+            self.line(wrapped("first: A body or \"world\", or (body, point) with a point (m) in its coordinates, or a named point.",
                               " " * 12, " " * 16))
             self.line(wrapped("second: Likewise.", " " * 12, " " * 16))
         elif pair == "joints":
@@ -210,13 +219,13 @@ class Writer:
             self.line(wrapped("second: The joint that follows.", " " * 12, " " * 16))
         elif one is not None:
             self.line(wrapped(f"{one['name']}: {meaning(one)}", " " * 12, " " * 16))
-        for key in rest:
+        for key in [*behind, *rest]:
             self.line(wrapped(f"{name_of(key)}: {meaning(key)}", " " * 12, " " * 16))
         self.line("\n        Returns:\n            A handle, by which keys can be read and changed.")
         self.line("\n        Raises:\n            InputError: with a code for what is wrong; nothing is added then.")
         example = BODY_EXAMPLE if kind == "body" else None
-        if word in EXAMPLES and method in EXAMPLES[word]:
-            example = SETUP + f"        >>> added = {EXAMPLES[word]}"
+        if kind != "body" and word in EXAMPLES and method in EXAMPLES[word]:
+            example = SETUP + ("        >>> " if " = " in EXAMPLES[word].partition("(")[0] else "        >>> added = ") + EXAMPLES[word]
         if example:
             self.line("\n        Example:" + example.replace("\n        ", "\n            "))
         self.line('        """')
@@ -224,7 +233,7 @@ class Writer:
             ['"name": name'] + (['"first": first, "second": second'] if pair is not None else [])
             + (['"shape": shape'] if kind == "body" else [])
             + ([f'"{one["name"]}": {one["name"]}'] if one is not None and pair is None else [])
-            + [f'"{key["name"]}": {name_of(key)}' for key in rest])
+            + [f'"{key["name"]}": {name_of(key)}' for key in [*behind, *rest]])
         call = textwrap.fill(f'added: {kind.capitalize()} = self._add("{kind}", "{word}", {{{content}}})',
                              116, initial_indent="        ", subsequent_indent="            ", break_on_hyphens=False,
                              break_long_words=False)
@@ -237,6 +246,7 @@ class Writer:
         self.line("    def _add(self, kind: str, word: str, content: Mapping[str, Any]) -> Any:")
         self.line("        raise NotImplementedError")
         self.adder("body", self.children["body"], "", "")
+        self.adder("point", self.children["point"], "", "a place of a body with a name")
         for kind in ("joint", "drive", "load", "sensor"):
             table = self.children[kind]
             for k in table["kinds"]:

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// layout allows long-file: all commands and options are one table, from which help and manual follow
 #include "arguments.h"
 
 #include <memory>
@@ -118,6 +119,33 @@ void add_scenario_commands(CLI::App& app, Arguments& a)
     add_common(check, a);
 }
 
+void add_import_command(CLI::App& app, Arguments& a)
+{
+    const auto given = arguments_of<ImportArguments>();
+    CLI::App& import =
+        add_command(app, a, "import", "Make a scenario of a robot's URDF, and list what is not kept",
+                    [given](const Common& common) { return import_command(*given, common); });
+    import.add_option("FILE", given->file, "robot (URDF)")->required()->type_name("FILE.urdf");
+    add_file(import, "-o,--output", given->output, "scenario; default: the file's stem with .toml, here")
+        ->type_name("FILE.toml");
+    const auto add_pairs = [&](const char* name, std::vector<std::string>& values, const char* description,
+                               const char* type) {
+        import.add_option(name, values, description)->allow_extra_args(false)->type_name(type);
+    };
+    add_pairs("--at", given->at, "coordinate of a joint at the start, rad or m; may be repeated",
+              "JOINT=VALUE");
+    add_pairs("--package", given->packages, "where package://NAME/ is; may be repeated", "NAME=FOLDER");
+    add_choice(import, "--base", given->base, {"fixed", "free"}, "first link; default: fixed in the world");
+    add_choice(import, "--meshes", given->meshes, {"draw", "none"}, "visuals; default: draw");
+    add_choice(import, "--limits", given->limits, {"stop", "ignore"}, "limits of joints; default: stop");
+    add_choice(import, "--inertias", given->inertias, {"mend", "strict"},
+               "those that belong to no body; default: mend");
+    import.add_option("--end", given->end, "end of the motion, s; default: 1")->type_name("T");
+    import.add_flag("--strict", given->is_strict, "what is lost and changes the motion is an error");
+    add_force(import, given->force);
+    add_common(import, a);
+}
+
 void add_solve_command(CLI::App& app, Arguments& a)
 {
     const auto given = arguments_of<SolveArguments>();
@@ -200,16 +228,16 @@ void add_run_commands(CLI::App& app, Arguments& a)
     info.add_option("RUN", *run, "result file")->required()->type_name("RUN.nc");
     add_common(info, a);
     const auto given = arguments_of<SampleArguments>();
-    CLI::App& sample =
-        add_command(app, a, "sample", "Print a body, a joint or a sensor of a run at given times",
-                    [given](const Common& common) { return sample_command(*given, common); });
+    CLI::App& sample = add_command(
+        app, a, "sample", "Print a body, a joint, a sensor, a point or a load of a run at given times",
+        [given](const Common& common) { return sample_command(*given, common); });
     sample.add_option("RUN", given->run, "result file")->required()->type_name("RUN.nc");
     auto* body = sample.add_option("--body", given->body, "print pose, velocity and momentum of this body")
                      ->type_name("BODY");
     auto* joint = sample.add_option("--joint", given->joint, "print reactions and coordinates of this joint")
                       ->type_name("JOINT");
     joint->excludes(body);
-    sample.add_option("--sensor", given->sensor, "print readings of this sensor")
+    sample.add_option("--sensor", given->sensor, "print readings of this sensor, point or load")
         ->type_name("SENSOR")
         ->excludes(body)
         ->excludes(joint);
@@ -386,6 +414,7 @@ void declare(CLI::App& app, Arguments& arguments)
     app.add_flag("--version", arguments.is_version, "print the version");
     add_colour(app, arguments);
     add_scenario_commands(app, arguments);
+    add_import_command(app, arguments);
     add_solve_command(app, arguments);
     add_mass_command(app, arguments);
     add_rest_commands(app, arguments);

@@ -83,9 +83,19 @@ std::string place_in_words(const Vector3& x)
 /// What a spring or actuator pulls with; empty: no such load.
 std::string force_of(const Load& load, const State& start)
 {
-    if (load.readings.empty() || load.readings[0].name != "force") return {};
+    if (load.readings.empty()) return {};
+    const LoadReading& reading = load.readings[0];
+    if (reading.name != "force" && reading.name != "effort") return {};
     const LoadArguments arguments = load_arguments(load, {start.t, Side::right}, start.X, start.V, {});
-    return fmt::format("force {:.4g} {}", load.readings[0].value(arguments) + 0.0, load.readings[0].unit);
+    return fmt::format("{} {:.4g} {}", reading.name, reading.value(arguments) + 0.0, reading.unit);
+}
+
+/// The springs at the limits of a joint, which nobody may have stated.
+std::string limits_of(const Load& load)
+{
+    const auto stiffness = std::ranges::find(load.readings, "limit_stiffness", &LoadReading::name);
+    if (stiffness == load.readings.end()) return {};
+    return fmt::format(", limits {:.4g} {}", stiffness->value(LoadArguments()), stiffness->unit);
 }
 
 /// Where rods and springs end in the world, since their points are stated on the bodies; and forces, which
@@ -112,7 +122,7 @@ std::string springs_of(const Model& model, const State& start)
             lines.push_back(plain(load.name) + ": " + line(load.bodies, load.points) +
                             (force.empty() ? "" : ", ") + force);
         else if (!force.empty())
-            lines.push_back(plain(load.name) + ": " + force);
+            lines.push_back(plain(load.name) + ": " + force + limits_of(load));
     }
     std::string text;
     for (std::size_t i = 0; i < std::min(lines.size(), most_told); ++i) text += "    " + lines[i] + "\n";

@@ -35,6 +35,18 @@ int solve_command(const SolveArguments& arguments, const Common& common);
 
 int check_command(const std::string& scenario, const Common& common);
 
+struct ImportArguments {
+    std::string file;              ///< URDF
+    std::string output;            ///< scenario; empty: the file's stem with .toml in the current folder
+    std::vector<std::string> at;   ///< JOINT=VALUE, rad or m
+    std::vector<std::string> packages;   ///< NAME=FOLDER
+    std::string base = "fixed", meshes = "draw", limits = "stop", inertias = "mend";
+    std::string end = "1";   ///< as typed, s
+    bool is_strict = false;
+    bool force = false;
+};
+int import_command(const ImportArguments& arguments, const Common& common);
+
 struct MassArguments {
     std::string file;            ///< a mesh, or a scenario (.toml)
     std::string unit = "m";      ///< of a mesh's numbers

@@ -4,6 +4,7 @@
 #include "console.h"
 #include "failure.h"
 #include "livens/io/results.h"
+#include "sample_query.h"
 
 namespace livens::program {
 
@@ -252,8 +253,9 @@ int completion_command(const CompletionArguments& arguments, const std::vector<C
     if (!arguments.joints.empty()) return print_names(read_run(arguments.joints).joint_names);
     if (!arguments.sensors.empty()) {
         const Scenario scenario = scenario_of_run(read_run(arguments.sensors), arguments.sensors);
+        const Model model = with_all_readings(scenario.model);
         std::vector<std::string> names;
-        for (const Sensor& sensor : scenario.model.sensors()) names.push_back(sensor.name);
+        for (const Sensor& sensor : model.sensors()) names.push_back(sensor.name);
         return print_names(names);
     }
     if (arguments.shell.empty())

@@ -59,6 +59,8 @@ PictureOptions picture_of(const ExportArguments& arguments)
 void write_export(const ExportFormat& format, const std::string& file, const ExportInput& input)
 {
     try {
+        if (const std::string doubt = format.doubt != nullptr ? format.doubt(input) : ""; !doubt.empty())
+            say_warning(plain(file) + ": " + doubt);
         format.write(file, input);
     } catch (const Stopped&) {
         throw failure(exit_signal + InterruptWatch::signal(), "stopped before it was written");

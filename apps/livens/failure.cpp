@@ -265,7 +265,11 @@ void as_usage(const std::function<void()>& check)
 
 Scenario load_scenario(const std::string& file, const Common& common, std::vector<Diagnostic>* warnings)
 {
-    ScenarioResult result = read_scenario(file, common.parameters);
+    return accepted(read_scenario(file, common.parameters), common, warnings);
+}
+
+Scenario accepted(ScenarioResult result, const Common& common, std::vector<Diagnostic>* warnings)
+{
     if (!result.scenario) throw failure_of(std::move(result));
     if (!result.diagnostics.empty() && !common.quiet) {
         const Terminal terminal = terminal_of(STDERR_FILENO);

@@ -53,6 +53,9 @@ void as_usage(const std::function<void()>& check);
 Scenario load_scenario(const std::string& file, const Common& common,
                        std::vector<Diagnostic>* warnings = nullptr);
 
+/// Of what was read by other means, likewise.
+Scenario accepted(ScenarioResult result, const Common& common, std::vector<Diagnostic>* warnings = nullptr);
+
 /// The model of a run, made again from the text in its file; throws if it is not the motion's. `run_file`
 /// serves for messages.
 Scenario scenario_of_run(const Run& run, const std::string& run_file);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // livens sample: a body, a joint or a sensor of a run at any instant.
+#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -23,14 +24,16 @@ namespace livens::program {
 
 namespace {
 
-int index_of(const std::vector<std::string>& names, const std::string& name, const char* kind)
+/// Of the body or joint that is asked for; of sensors there is none.
+int index_of(const SampleArguments& arguments, const Run& run, const Model& model)
 {
-    for (std::size_t i = 0; i < names.size(); ++i)
-        if (names[i] == name) return static_cast<int>(i);
-    std::string known;
-    for (std::size_t i = 0; i < names.size() && i < 20; ++i) known += (i > 0 ? ", '" : "'") + names[i] + "'";
-    throw failure(exit_usage, fmt::format("the run has no {} '{}'; it has {}", kind, name,
-                                          known.empty() ? "none" : known));
+    if (!arguments.sensor.empty()) return 0;
+    const bool is_body = arguments.joint.empty();
+    const std::vector<std::string>& names = is_body ? run.body_names : run.joint_names;
+    const std::string& name = is_body ? arguments.body : arguments.joint;
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end()) throw no_such(is_body ? "body" : "joint", name, model);
+    return static_cast<int>(found - names.begin());
 }
 
 template <int Rows>
@@ -99,8 +102,26 @@ void body_members(JsonWriter& json, const Query& q, double t)
 
 const char* source_of(const Query& q, const JointSample& s, double t)
 {
-    if (q.arguments.exact && element_end_at(q.run.motion.mesh, t) < 0) return "solved";
-    return s.is_acceleration_level ? "acceleration level" : "interpolated multipliers";
+    const bool is_end = element_end_at(q.run.motion.mesh, t) >= 0;
+    if (q.arguments.exact && !is_end) return "solved";
+    if (!s.is_acceleration_level) return "interpolated multipliers";
+    return is_end ? "acceleration level" : "polynomial";
+}
+
+/// The reaction along the axes of each body that has some.
+void in_axes_members(JsonWriter& json, const Query& q, const Reaction& r, double t)
+{
+    const Model& model = q.scenario.model;
+    const Joint& joint = model.joints()[static_cast<std::size_t>(q.index)];
+    const State state = state_at(q, t);
+    for (const auto& [key, v] : {std::pair{"force_in", r.force}, {"torque_in", r.torque}}) {
+        json.key(key).begin_object();
+        for (const int body : {joint.first, joint.second})
+            if (body != world && !model.bodies()[static_cast<std::size_t>(body)].is_point)
+                add(json, model.body_name(body).c_str(),
+                    transpose(project_directors(directors(state.X[static_cast<std::size_t>(body)]))) * v);
+        json.end_object();
+    }
 }
 
 void joint_members(JsonWriter& json, const Query& q, double t)
@@ -117,6 +138,7 @@ void joint_members(JsonWriter& json, const Query& q, double t)
     };
     side("left", s.left);
     side("right", s.right);
+    in_axes_members(json, q, s.right, t);
     json.member("estimated_reaction_error", joint_error(q, t));
     horizon_member(json, q, t);
     json.member("source", source_of(q, s, t));
@@ -165,13 +187,10 @@ int sample_command(const SampleArguments& arguments, const Common& common)
         throw failure(exit_usage, "sample needs one of --body NAME, --joint NAME and --sensor NAME");
     if (arguments.exact) pin_instructions("");
     const Run run = read_run(arguments.run);
-    const int index = is_of_sensor              ? 0
-                      : arguments.joint.empty() ? index_of(run.body_names, arguments.body, "body")
-                                                : index_of(run.joint_names, arguments.joint, "joint");
+    const Scenario scenario = scenario_of_run(run, arguments.run);
+    Query query{arguments, run, scenario, index_of(arguments, run, scenario.model), {}};
     std::vector<double> times;
     for (const std::string& text : arguments.at) times.push_back(instant_inside(text, run.motion));
-    const Scenario scenario = scenario_of_run(run, arguments.run);
-    Query query{arguments, run, scenario, index, {}};
     if (!arguments.joint.empty()) query.coordinates.emplace(scenario.model, run.motion);
     if (!run.report.converged())
         say_warning(std::string("the run is not converged: ") + to_string(run.report.status));

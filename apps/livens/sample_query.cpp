@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sample_query.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "exact.h"
-#include "failure.h"
+#include "livens/multibody/sensors.h"
 
 namespace livens::program {
 
@@ -22,6 +26,14 @@ ExactSample solved_at(const Query& q, double t)
     return sample_exactly(q.scenario.model, q.run.motion, q.scenario.method, t, q.scenario.options);
 }
 
+template <class Part>
+std::vector<std::string> names_of(const std::vector<Part>& parts)
+{
+    std::vector<std::string> names;
+    for (const Part& part : parts) names.push_back(part.name);
+    return names;
+}
+
 /// Where the polynomial is what is shown, its own distance from the solution adds to the error of both ends.
 bool is_interpolated(const Query& q, double t)
 {
@@ -29,6 +41,41 @@ bool is_interpolated(const Query& q, double t)
 }
 
 }   // namespace
+
+Model with_all_readings(const Model& model)
+{
+    Model all = model;
+    const auto has = [&](const std::string& name) {
+        return std::ranges::find(all.sensors(), name, &Sensor::name) != all.sensors().end();
+    };
+    for (const NamedPoint& point : model.points())
+        if (point.body != world && !has(point.name))
+            all.add_sensor(point_sensor(point.name, point.body, point.position, model.start().X));
+    for (int l = 0; l < static_cast<int>(model.loads().size()); ++l)
+        if (const Load& load = model.loads()[static_cast<std::size_t>(l)]; !has(load.name))
+            all.add_sensor(load_sensor(load.name, l, load));
+    return all;
+}
+
+Failure no_such(std::string_view kind, const std::string& name, const Model& model)
+{
+    const std::pair<std::string_view, std::vector<std::string>> kinds[] = {
+        {"body", names_of(model.bodies())},
+        {"joint", names_of(model.joints())},
+        {"sensor", names_of(with_all_readings(model).sensors())}};
+    std::string known;
+    for (const auto& [other, names] : kinds) {
+        if (other != kind && std::ranges::find(names, name) != names.end())
+            return failure(exit_usage,
+                           fmt::format("the run has no {} '{}': it is asked for by --{}", kind, name, other));
+        for (std::size_t i = 0; other == kind && i < names.size() && i < 20; ++i)
+            known += (i > 0 ? ", '" : "'") + names[i] + "'";
+    }
+    if (kind == "sensor" && model.find_point(name) >= 0)
+        return failure(exit_usage, fmt::format("'{}' is a point of the world, which stands still", name));
+    return failure(exit_usage, fmt::format("the run has no {} '{}'; it has {}", kind, name,
+                                           known.empty() ? "none" : known));
+}
 
 BodySample body_at(const Query& q, double t)
 {
@@ -91,13 +138,18 @@ double joint_error(const Query& q, double t)
     return e.largest_reaction > 0 ? error + gap_between(here, there, e.length) / e.largest_reaction : error;
 }
 
+State state_at(const Query& q, double t)
+{
+    return q.arguments.exact ? exact_sample(q.run, q.scenario, t).state : sample_state(q.run.motion, t);
+}
+
 std::vector<CoordinateAt> coordinates_at(const Query& q, double t)
 {
     std::vector<CoordinateAt> all;
-    const bool is_exact = q.arguments.exact;
-    const State state = is_exact ? exact_sample(q.run, q.scenario, t).state : sample_state(q.run.motion, t);
-    const AcceleratedState at = accelerated_at(q.run, q.scenario, t, is_exact);
-    const std::vector<CoordinateValue> values = q.coordinates->at(state, &at);
+    const State given = state_at(q, t);
+    const Accelerations accelerations(q.scenario.model, q.run.motion);
+    const AcceleratedState at = accelerations.at(given);
+    const std::vector<CoordinateValue> values = q.coordinates->at(accelerations.on_joints(given), &at);
     for (std::size_t i = 0; i < values.size(); ++i)
         if (q.coordinates->places()[i].joint == q.index) {
             const NamedCoordinate& of = q.coordinates->coordinate(static_cast<int>(i));

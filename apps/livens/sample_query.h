@@ -4,9 +4,11 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "commands.h"
+#include "failure.h"
 #include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/io/results.h"
@@ -22,6 +24,7 @@ struct Query {
     std::optional<JointCoordinates> coordinates;   ///< of a joint
 };
 
+State state_at(const Query& q, double t);
 BodySample body_at(const Query& q, double t);
 /// nan where there is no estimate.
 BodyGap body_error(const Query& q, double t);
@@ -40,6 +43,11 @@ struct CoordinateAt {
 };
 /// Those of the joint that is asked for.
 std::vector<CoordinateAt> coordinates_at(const Query& q, double t);
+
+/// The model, with sensors of its points and loads, which are read without one.
+Model with_all_readings(const Model& model);
+/// That there is no "body", "joint" or "sensor" of that name: what there is, or of what kind the name is.
+Failure no_such(std::string_view kind, const std::string& name, const Model& model);
 
 /// Known where the growth of perturbations is.
 std::optional<bool> beyond_horizon(const Query& q, double t);

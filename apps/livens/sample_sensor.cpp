@@ -13,6 +13,7 @@
 #include "livens/diagnostics/sample.h"
 #include "livens/io/json.h"
 #include "livens/io/shown_unit.h"
+#include "sample_query.h"
 
 namespace livens::program {
 
@@ -27,14 +28,11 @@ struct Found {
 Found find_sensor(const Model& model, const std::string& name)
 {
     Found found;
-    std::string known;
     for (const Sensor& sensor : model.sensors()) {
         if (sensor.name == name) return found.sensor = &sensor, found;
-        known += (known.empty() ? "'" : ", '") + sensor.name + "'";
         found.first += sensor.components.size();
     }
-    throw failure(exit_usage,
-                  fmt::format("the run has no sensor '{}'; it has {}", name, known.empty() ? "none" : known));
+    throw no_such("sensor", name, model);
 }
 
 /// In the units that are wished.
@@ -97,8 +95,9 @@ std::string text_of(const Sensor& sensor, const std::vector<ShownUnit>& units, d
 std::string sample_sensor(const SampleArguments& arguments, const Common& common, const Run& run,
                           const Scenario& scenario, const std::vector<double>& times)
 {
-    const Found found = find_sensor(scenario.model, arguments.sensor);
-    const SensorReadings readings(scenario.model, run.motion);
+    const Model model = with_all_readings(scenario.model);
+    const Found found = find_sensor(model, arguments.sensor);
+    const SensorReadings readings(model, run.motion);
     std::vector<std::vector<double>> rows;
     for (const double t : times) {
         const std::vector<double> all =

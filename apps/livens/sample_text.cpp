@@ -65,7 +65,10 @@ void add_joint(Rows& rows, const Query& q, double t)
     if (const double error = joint_error(q, t) * q.run.estimate.largest_reaction; std::isfinite(error))
         rows.text += fmt::format("  {:<22} {:.1e} N, {:.1e} N m\n", "estimated error", error,
                                  error * q.run.estimate.length);
-    if (!s.is_acceleration_level) rows.text += "  (interpolated multipliers: between element ends)\n";
+    if (!s.is_acceleration_level)
+        rows.text += "  (interpolated multipliers)\n";
+    else if (!q.arguments.exact && element_end_at(q.run.motion.mesh, t) < 0)
+        rows.text += "  (between element ends; --exact has the full order)\n";
 }
 
 void add_body(Rows& rows, const Query& q, double t)

@@ -441,7 +441,8 @@ def add_reference(site: Site) -> None:
 
 
 PYTHON = {
-    "Models": ["Model", "load", "Body", "Joint", "Drive", "Load", "Sensor", "Section", "Entry", "Names", "Parameters"],
+    "Models": ["Model", "Added", "load", "from_urdf", "Body", "Point", "Joint", "Drive", "Load", "Sensor", "Section", "Entry", "Names",
+               "Parameters"],
     "Shapes and tables": ["Shape", "box", "sphere", "cylinder", "capsule", "cone", "ellipsoid", "mesh", "parts", "point",
                           "tube", "table", "visual"],
     "Solving": ["solve", "solve_many", "Condition", "state", "positions", "momenta"],

@@ -42,7 +42,7 @@ def cost(sol: lv.Solution) -> float:
     at = sol(np.arange(0, sol.t[-1], 0.01))
     if sol.t[-1] < 3:   # it did not come to the end
         return 1e3
-    return float(trapezoid(at["pivot"].angle ** 2 + 0.1 * at["controller"].force ** 2, at.t))
+    return float(trapezoid(at["pivot"].angle ** 2 + 0.1 * at["controller"].effort ** 2, at.t))
 
 
 def main() -> None:
@@ -50,7 +50,7 @@ def main() -> None:
     sol = lv.solve(furuta(6, 0.8), 3, accuracy=1e-8)
     print(sol)
     print(f"the tilt falls from {sol['pivot'].angle[0]:.3f} to {sol['pivot'].angle[-1]:.1e} rad")
-    sol.plot("energy", "pivot.angle", "controller.force")[0].figure.savefig("furuta.png")
+    sol.plot("energy", "pivot.angle", "controller.effort")[0].figure.savefig("furuta.png")
 
     # A sweep: every pair of gains, on all cores.
     m = furuta(6, 0.8)

@@ -25,8 +25,10 @@ from ._errors import (Diagnostic, InputError, ModelWarning, Place, ResultFileErr
 from ._explain import explain
 from ._export import Comparison, compare
 from ._generated import *   # noqa: F403  the shapes and methods that the schema has, see __all__ there
-from ._generated import Body, Drive, Joint, Load, MethodOptions, Sensor
+from ._generated import Body, Drive, Joint, Load, MethodOptions, Point, Sensor
 from ._functions import BodyState
+from ._import import from_urdf
+from ._included import Added
 from ._load import load
 from ._model import Model
 from ._parameters import Parameters
@@ -40,12 +42,13 @@ from ._solve import solve, solve_many
 from ._values import Condition, Method, Shape, momenta, positions, state, table, visual
 
 __all__ = [
-    "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Diagnostic", "Drive", "Entry", "Equilibrium",
+    "Added", "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Diagnostic", "Drive", "Entry", "Equilibrium",
     "EquilibriumError", "Extremes", "InputError", "Joint", "JointSeries", "Linearisation", "Load", "LoadSeries", "Method",
-    "MethodOptions", "ModeBody", "ModeJoint", "Model", "ModelWarning", "Modes", "Names", "Parameters", "Parts", "Peak", "Place", "PointSeries",
+    "MethodOptions", "ModeBody", "ModeJoint", "Model", "ModelWarning", "Modes", "Names", "Parameters", "Parts", "Peak",
+    "Place", "Point", "PointSeries",
     "ReadingSeries", "RestBody", "RestJoint", "ResultFileError", "Section", "Sensor", "SensorSeries", "Series",
     "Shape", "SlowWarning", "Solution", "SolveError", "SolveWarning", "StateMatrices", "__version__", "compare",
-    "explain", "load", "load_solution", "momenta", "positions", "solve", "solve_many", "state", "table", "visual",
+    "explain", "from_urdf", "load", "load_solution", "momenta", "positions", "solve", "solve_many", "state", "table", "visual",
 ]
 __all__ += _generated.__all__
 

@@ -12,13 +12,14 @@ from . import _core
 from ._entries import Entry, Names, RootSection, Section, default_name, unknown_name
 from ._errors import Diagnostic, InputError, ModelWarning, fault, raised, stack_level, user_place
 from ._functions import adapted
-from ._generated import Adders, Body, Drive, Joint, Load, Sensor
+from ._generated import Adders, Body, Drive, Joint, Load, Point, Sensor
+from ._included import has_point
 from ._places import arranged, diagnostic_of, faults_in, key_below, of_table, path_at, path_of, store, words_in
 from ._rotations import oriented, with_rotation
 from ._tree import KINDS, Table, diagnostics_of_text, frozen, plain, schema, toml
 from ._values import Shape
 
-_TYPES: dict[str, type[Entry]] = {"body": Body, "joint": Joint, "drive": Drive, "load": Load, "sensor": Sensor}
+_TYPES: dict[str, type[Entry]] = {"body": Body, "point": Point, "joint": Joint, "drive": Drive, "load": Load, "sensor": Sensor}
 _MISSING = object()
 _INSTEAD = {   # keys that say the same in other ways: assigning one takes the others away
     "body": (("mass", "density"), ("directors", "quaternion", "rotation_vector"),
@@ -32,6 +33,8 @@ class Tree(Adders):
 
     _root: Table
     _file: str
+    _home: str   # of an imported model: where paths of its meshes begin
+    _imported: tuple[Diagnostic, ...]
     _text: str | None   # as it was read, as long as nothing was edited
     _functions: dict[str, tuple[str, Callable[..., Any]]]
     _built: dict[Any, tuple[Any, list[Diagnostic]]]
@@ -44,6 +47,8 @@ class Tree(Adders):
     @property
     def _folder(self) -> str:
         """Where its meshes are: beside the file that it came from, else where Python is."""
+        if self._home:
+            return self._home
         return os.path.dirname(self._file) if os.path.isfile(self._file) else ""
 
     def _build(self, overrides: Mapping[str, Any]) -> tuple[Any, list[Diagnostic]]:
@@ -202,7 +207,7 @@ class Tree(Adders):
         name = content.get("name")
         path = f"{kind}[{name if isinstance(name, str) else len(self._root.get(kind, [])) + 1}]"
         table = Table(place=user_place())
-        given = {"name": name, "type": word or None, **with_rotation(arranged(content, word))}
+        given = {"name": name, "type": word or None, **with_rotation(arranged(content, word, self._is_point))}
         self._refuse_part_as_type(kind, word, name)
         for key_name, value in given.items():
             if value is None:
@@ -237,6 +242,27 @@ class Tree(Adders):
             raise raised(found)
         self._text, self._built, self._warned = None, {}, False
         return self._handle(kind, table)
+
+    def _include(self, table: Table) -> None:
+        """Appends an ``[[include]]``, or raises what is wrong with it."""
+        includes = self._root["include"] = self._root.get("include", [])
+        includes.append(table)
+        found = faults_in({**self._root, "time": {"end": 1}}, "include", table)
+        if found:
+            includes.pop()
+            if not includes:
+                del self._root["include"]
+            raise raised(found)
+        self._touch()
+
+    def _is_point(self, part: object) -> bool:
+        """Whether a part in front is a point: a handle, or the name of one."""
+        if isinstance(part, Entry):
+            return part._key == "point"
+        if not isinstance(part, str):
+            return False
+        kinds = [kind for kind, _ in self._named(part)]
+        return kinds == ["point"] or (not kinds and has_point(self._root, part))
 
     def _refuse_part_as_type(self, kind: str, word: str, name: object) -> None:
         """add_drive("motor", "pivot", rate=1): the joint stands where the type does."""
@@ -274,6 +300,8 @@ class Tree(Adders):
         part: dict[str, Any] = {key: value for key, value in self._root.items() 
                                 if key in ("format", "parameters", "gravity", "start")}
         part["time"] = {"end": 1}
+        if "include" in self._root:
+            part["include"] = self._root["include"]
         for part_kind, part_table in sorted(wanted.values(), key=lambda item: self._order[id(item[1])]):
             part.setdefault(part_kind, []).append(part_table)
         n_all = sum(len(self._root.get(k, [])) for k in KINDS)

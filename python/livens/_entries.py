@@ -179,6 +179,11 @@ def default_name(kind: str, table: Mapping[str, Any]) -> str:
     if isinstance(table.get("name"), str):
         return str(table["name"])
     word = str(table.get("type", kind))
+    two = table.get("points")
+    if isinstance(two, tuple) and len(two) == 2 and all(isinstance(point, str) for point in two):
+        return f"drive {two[0]}-{two[1]}" if kind == "drive" else f"{word} {two[0]}-{two[1]}"
+    if "body" not in table and isinstance(table.get("point"), str) and "between" not in table:
+        return f"drive of {table['point']}" if kind == "drive" else f"{word} on {table['point']}"
     for key in ("between", "joints"):
         if isinstance(table.get(key), tuple) and len(table[key]) == 2:
             return f"{word} {table[key][0]}-{table[key][1]}"

@@ -13,12 +13,16 @@ from . import _core
 from ._editing import Tree
 from ._entries import Entry, Names, Section, default_name, unknown_name
 from ._errors import Diagnostic, SlowWarning, SolveWarning, fault, file_name, make_way, stack_level, user_place
-from ._generated import Body, Drive, Joint, Load, Sensor
+from ._generated import Body, Drive, Joint, Load, Point, Sensor
+from ._included import Added, as_part, files_of
 from ._other_names import of_model
 from ._parameters import Parameters
 from ._places import some_time
 from ._rest import Equilibrium, EquilibriumError, Linearisation, Modes
 from ._tree import KINDS, Table, frozen, toml
+
+if TYPE_CHECKING:
+    from ._values import Matrix, Vector
 
 
 def _holds(name: str, content: bytes) -> bool:
@@ -27,13 +31,6 @@ def _holds(name: str, content: bytes) -> bool:
         return False
     with open(name, "rb") as stream:
         return stream.read(len(content) + 1) == content
-
-
-def _meshes(tree: Any) -> list[str]:
-    """Paths of all meshes of a tree."""
-    items = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, (list, tuple)) else ()
-    return [path for key, item in items
-            for path in ([item] if key == "mesh" and isinstance(item, str) else _meshes(item))]
 
 
 class Model(Tree):
@@ -58,8 +55,9 @@ class Model(Tree):
 
     def __init__(self, title: str = "", *, gravity: Any = None) -> None:
         self._root = Table({"format": 1}, user_place())
-        self._file = ""
+        self._file, self._home = "", ""
         self._text = None
+        self._imported = ()
         self._functions = {}
         self._forget()
         if title:
@@ -119,6 +117,11 @@ class Model(Tree):
         return Names(self, "body", Body)
 
     @property
+    def points(self) -> Names[Point]:
+        """All points by name."""
+        return Names(self, "point", Point)
+
+    @property
     def joints(self) -> Names[Joint]:
         """All joints by name."""
         return Names(self, "joint", Joint)
@@ -163,8 +166,17 @@ class Model(Tree):
         """The table ``[end]``."""
         return self._section("end")
 
+    @property
+    def imported(self) -> list[Diagnostic]:
+        """What :func:`from_urdf` did not keep as it was, once for each kind; empty for other models.
+
+        Codes: ``import-lost`` is not kept, ``import-mended`` was changed so that it can be solved, ``import-merged`` is
+        kept as part of something else. Not carried along in files.
+        """
+        return list(self._imported)
+
     def __getitem__(self, name: str) -> Any:
-        """The body, joint, drive, load or sensor of that name."""
+        """The body, point, joint, drive, load or sensor of that name."""
         found = self._named(name)
         if len(found) == 1:
             return self._handle(*found[0])
@@ -180,7 +192,7 @@ class Model(Tree):
         return isinstance(name, str) and bool(self._named(name))
 
     def remove(self, part: str | Entry) -> None:
-        """Removes a body, joint, drive, load or sensor. Parts that still refer to it are an error in :func:`solve`.
+        """Removes a body, point, joint, drive, load or sensor. Parts that still refer to it are an error in :func:`solve`.
 
         Raises:
             KeyError: no part has this name.
@@ -202,7 +214,8 @@ class Model(Tree):
         """An independent copy of the model."""
         other = object.__new__(type(self))
         other._root = self._root.copy()
-        other._file, other._text = self._file, self._text
+        other._file, other._home, other._text = self._file, self._home, self._text
+        other._imported = self._imported
         other._functions = dict(self._functions)
         other._forget()
         other._built, other._warned = dict(self._built), self._warned   # what is built is never changed
@@ -223,10 +236,12 @@ class Model(Tree):
 
     def __getstate__(self) -> dict[str, Any]:
         self._refuse_functions("pickled")
-        return {"root": self._root, "file": self._file, "text": self._text}
+        return {"root": self._root, "file": self._file, "home": self._home, "text": self._text,
+                "imported": self._imported}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self._root, self._file, self._text = state["root"], state["file"], state["text"]
+        self._home, self._imported = state["home"], state["imported"]
         self._functions = {}
         self._forget()
 
@@ -249,7 +264,7 @@ class Model(Tree):
         if file is not None:
             name = file_name(file)
             if not _holds(name, text.encode()):
-                make_way(name, "scenario", [os.path.join(self._folder, mesh) for mesh in _meshes(self._root)], force)
+                make_way(name, "scenario", [os.path.join(self._folder, mesh) for mesh in files_of(self._root)], force)
                 _core.write_file(name, text.encode())
         return text
 
@@ -267,6 +282,53 @@ class Model(Tree):
             for kind in KINDS for t in self._root.get(kind, [])[:200])
         return (f"<b>{escape(self.title or 'model')}</b><table><tr><th>part</th><th>name</th><th>type</th></tr>"
                 f"{rows}</table>")
+
+    # Models inside.
+
+    def add(self, other: Model, prefix: str = "", *, position: Vector | None = None, rotation: Any = None,
+            directors: Matrix | None = None, quaternion: Vector | None = None,
+            rotation_vector: Vector | None = None, parameters: Mapping[str, Any] | None = None) -> Added:
+        """Adds all of another model, as it is now: bodies, points, joints, drives, loads and sensors.
+
+        It is displaced and rotated as a whole. Whatever it states in the world is displaced with it: points and axes,
+        forces in world axes, prescribed paths, and the axes of its sensors. Its ``title``, ``time`` and ``method`` are
+        not used; its gravity equals that of this model or is not stated: gravity is not rotated.
+
+        Args:
+            other: The model that is added; later changes of it have no effect here.
+            prefix: Prefix of all names: with ``"left "``, ``knee`` becomes ``left knee``.
+            position: Position of its origin, m.
+            rotation: A Rotation of SciPy or a matrix; or ``directors``, ``quaternion``, ``rotation_vector``, one of
+                them, as bodies have it.
+            directors: Likewise.
+            quaternion: Likewise, (w, x, y, z).
+            rotation_vector: Likewise, rad.
+            parameters: Values for its parameters: numbers, or expressions of parameters of this model.
+
+        Returns:
+            Its names here, by those that it has itself.
+
+        Raises:
+            InputError: ``name-duplicate``, naming the part; ``gravity-differs``; what is wrong with it.
+
+        Example:
+            >>> import livens as lv
+            >>> leg = lv.Model("leg")
+            >>> shin = leg.add_body("shin", lv.box(0.05, 0.05, 0.4, mass=1), position=(0, 0, -0.2))
+            >>> hip = leg.add_revolute("hip", "world", shin, at=(0, 0, 0), axis=(0, 1, 0))
+            >>> m = lv.Model("two legs", gravity=(0, 0, -9.81))
+            >>> left = m.add(leg, "left ", position=(0, 0.1, 0))
+            >>> right = m.add(leg, "right ", position=(0, -0.1, 0), rotation_vector=(0, "20 deg", 0))
+            >>> bar = m.add_rod("bar", left["shin"], right["shin"])
+            >>> sol = lv.solve(m, 1)
+            >>> sol["right shin"].position[0].round(4).tolist()
+            [-0.0684, -0.1, -0.1879]
+        """
+        placement = {"position": position, "rotation": rotation, "directors": directors, "quaternion": quaternion,
+                     "rotation_vector": rotation_vector, "parameters": parameters}
+        table, names = as_part(self, other, prefix, placement)
+        self._include(table)
+        return names
 
     # Python functions.
 

@@ -43,7 +43,8 @@ MODULE = {
     "simulate run integrate solveivp odeint simulation solver": _SOLVE,
     "read open loadtoml fromfile fromtoml loadscenario loadmodel": "lv.load('model.toml')",
     "loadresult loadresults readresult readresults loadrun openresult opensolution loadsol": "lv.load_solution('run.nc')",
-    "fromurdf loadurdf urdf frommjcf loadmjcf fromxml fromsdf fromadams": "livens reads its own TOML scenarios only; a page on "
+    "loadurdf readurdf importurdf parseurdf urdf": "lv.from_urdf('robot.urdf')",
+    "frommjcf loadmjcf fromxml fromsdf fromadams": "livens reads its own TOML scenarios only; a page on "
         "each program says how models are carried over (docs/coming_from)",
     "world ground": "the fixed frame is the word \"world\"",
     "system multibody multibodysystem mechanism plant mbs": "lv.Model(\"name\", gravity=(0, 0, -9.81))",
@@ -107,7 +108,8 @@ JOINT = {
     "q position pos theta phi x coordinate value rotation": ("angle", "displacement"),
     "angledeg degrees angledegrees deg": "np.degrees(sol['@'].angle)",
     "acceleration angularacceleration qddot": ("angle_acceleration", "displacement_acceleration"),
-    "motortorque drivetorque effort actuatorforce": "a drive is read by its own name: sol['motor'].torque or .force",
+    "motortorque drivetorque effort actuatorforce drive_torque": "what a drive or actuator does along the coordinate is read by its own "
+                                                                 "name: sol['motor'].effort",
 }
 
 _RESULTS = {   # endings of other formats, which save() does not write
@@ -160,7 +162,7 @@ def method_for(word: str) -> str:
     if plain_word(word) in ("motor", "rotationalmotor", "jointmotor", "motion", "servo"):
         return ("m.add_joint_drive(name, joint, rate=..) where its motion is known, "
                 "m.add_actuator(name, joint, value=..) where its torque is")
-    for kind in KINDS[1:]:
+    for kind in [kind for kind in KINDS if schema().children[kind]["kinds"]]:
         choices = [k["word"] for k in schema().children[kind]["kinds"]]
         suffix = "" if kind in ("joint", "load") else f"_{kind}"
         bare = re.sub(rf"_?{kind}$", "", word, flags=re.IGNORECASE) or word
@@ -223,7 +225,9 @@ def refused_ending(name: str) -> str:
 def refused_model(name: str) -> str:
     """Why lv.load() does not read a file, by its ending; empty where it does."""
     ending = name.rpartition(".")[2].lower() if "." in name else ""
-    if ending in ("urdf", "xml", "mjcf", "sdf", "xacro", "adm", "cmd", "slx", "py", "json", "yaml", "yml"):
+    if ending == "urdf":
+        return f"a robot is read by lv.from_urdf('{name}')"
+    if ending in ("xml", "mjcf", "sdf", "xacro", "adm", "cmd", "slx", "py", "json", "yaml", "yml"):
         return "livens reads its own TOML scenarios; docs/coming_from says how models of other programs are carried over"
     if ending in ("nc", "cdf"):
         return f"a result is read by lv.load_solution('{name}')"

@@ -30,7 +30,7 @@ UNITS = {
     "potential": "J", "energy": "J", "work": "J", "drift": "J", "position_error": "m", "orientation_error": "rad",
     "velocity_error": "m/s", "rigidity_stress": "N m", "mean_stress": "Pa", "reaction_error": "1", "growth": "1", "t": "s", "power": "W",
     "acceleration": "m/s^2", "angular_acceleration": "rad/s^2", "center_acceleration": "m/s^2",
-    "angle_acceleration": "rad/s^2", "displacement_acceleration": "m/s^2", "drive_torque": "N m", "drive_force": "N"}
+    "angle_acceleration": "rad/s^2", "displacement_acceleration": "m/s^2"}
 _BODY_ARRAYS = ("position", "center_of_mass", "quaternion", "directors", "velocity", "angular_velocity",
                 "angular_velocity_body", "acceleration", "angular_acceleration", "linear_momentum", "angular_momentum")
 
@@ -199,7 +199,7 @@ class BodySeries(Part):
         if not isinstance(given, (tuple, list)) or len(given) != 3:
             raise fault("wrong-type", "a point has three coordinates, as in (0.5, 0, 0)", "at")
         numbers = [_core.quantity(item, "m", "") if isinstance(item, str) else float(item) for item in given]
-        return PointSeries(self, np.array(numbers))
+        return PointSeries(self._series, f"point of {self.name}", 0, self, np.array(numbers))
 
     @property
     def linear_momentum(self) -> Floats:
@@ -244,45 +244,49 @@ class BodySeries(Part):
         return self._series._estimate("velocity", self._index)
 
 
-class PointSeries:
-    """A point of a body along a motion, world axes; see :meth:`BodySeries.point`.
+class PointSeries(Part):
+    """A point along a motion, world axes: a named one of the model, or one of a body; see :meth:`BodySeries.point`.
 
     Example:
         >>> import livens as lv
         >>> m = lv.Model()
         >>> top = m.add_body("top", lv.sphere("10 cm", mass=1), angular_velocity=(0, 0, 2))
-        >>> rim = lv.solve(m, 1)["top"].point(("10 cm", 0, 0))
-        >>> (rim.acceleration[0] + 0.0).round(9).tolist()
+        >>> rim = m.add_point("rim", top, position=("10 cm", 0, 0))
+        >>> sol = lv.solve(m, 1)
+        >>> (sol["rim"].acceleration[0] + 0.0).round(9).tolist()
+        [-0.4, 0.0, 0.0]
+        >>> (sol["top"].point(("10 cm", 0, 0)).acceleration[0] + 0.0).round(9).tolist()
         [-0.4, 0.0, 0.0]
     """
 
-    def __init__(self, body: BodySeries, at: Floats) -> None:
-        self._body = body
-        self._arm: Floats = np.zeros_like(body.position) if not at.any() else np.asarray(at @ body.directors)
-
-    @property
-    def t(self) -> Floats:
-        """Instants, s, shape (n,)."""
-        return self._body.t
+    def __init__(self, series: Series, name: str, index: int, body: BodySeries | None, at: Floats) -> None:
+        super().__init__(series, name, index)
+        self._body = body   # None: the world
+        shape = (3,) if series._is_single else (len(series._instants()), 3)
+        self._still: Floats = np.zeros(shape)
+        self._arm: Floats = self._still + at if body is None else (
+            self._still if not at.any() else np.asarray(at @ body.directors))
 
     @property
     def position(self) -> Floats:
         """m, shape (n, 3)."""
-        return self._body.position + self._arm
+        return self._arm if self._body is None else self._body.position + self._arm
 
     @property
     def velocity(self) -> Floats:
         """m/s, shape (n, 3)."""
+        if self._body is None:
+            return self._still
         velocity: Floats = self._body.velocity + (np.cross(self._body.angular_velocity, self._arm) if self._arm.any() else 0)
         return velocity
 
     @property
     def acceleration(self) -> Floats:
         """m/s^2, shape (n, 3); see :attr:`BodySeries.acceleration`."""
-        return self._body._moved(self._body.acceleration, self._arm)
+        return self._still if self._body is None else self._body._moved(self._body.acceleration, self._arm)
 
-    def __repr__(self) -> str:
-        return f"<livens point of '{self._body.name}' at {self._body._series._n_text()}: position, velocity, acceleration>"
+    def arrays(self) -> dict[str, Floats]:
+        return {name: getattr(self, name) for name in ("position", "velocity", "acceleration")}
 
 
 class JointSeries(Part):
@@ -306,10 +310,13 @@ class JointSeries(Part):
             if name in (known, known + "_rate"):
                 column = "coordinate" if name == known else "coordinate_rate"
                 return self._series._shaped(self._series._scalars()[column][:, self._first + i])
-        if name in ("drive_torque", "drive_force", "power"):
+        if name in ("effort", "power"):
             column = f"{name} {self._index}"
-            if column in self._series._drives():
+            if column in self._series._result.drive_columns:
                 return self._series._shaped(self._series._drives()[column][:, 0])
+        effort = self._efforts().get(name)
+        if effort is not None:
+            return effort["effort"]
         if name.startswith("_"):
             raise AttributeError(name)
         has = [key for key in dir(type(self)) if not key.startswith("_")]
@@ -321,9 +328,22 @@ class JointSeries(Part):
 
     def _names(self) -> list[str]:
         names = [name + end for name in self.coordinates for end in ("", "_rate", "_acceleration")]
-        drives = [key for key in ("drive_torque", "drive_force", "power")
-                  if f"{key} {self._index}" in self._series._result.drive_columns]
-        return [*names, "force", "torque", *drives]
+        drives = [key for key in ("effort", "power") if f"{key} {self._index}" in self._series._result.drive_columns]
+        return [*names, "force", "torque", *drives, *self._efforts()]
+
+    def _efforts(self) -> dict[str, LoadSeries]:
+        """The loads that the joint states itself: "effort" along its coordinate, or of two "angle_effort" and the other."""
+        ends = {"": "effort", " angle": "angle_effort", " displacement": "displacement_effort"}
+        own = [name for name, type, told in self._series._result.loads if type == "joint" and told[0][0] == "effort"]
+        return {word: self._series.loads[self._name + end] for end, word in ends.items() if self._name + end in own}
+
+    def unit(self, name: str) -> str:
+        """The unit of an attribute: ``"N m"``."""
+        if name in self._efforts():
+            return self._efforts()[name].unit("effort")
+        if name == "effort":
+            return str(self._series._result.drive_columns[f"effort {self._index}"])
+        return super().unit(name)
 
     def force_in(self, body: str | Entry | Part) -> Floats:
         """:attr:`force` in components along the axes of a body, N, shape (n, 3)."""

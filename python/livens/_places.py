@@ -2,7 +2,7 @@
 """Where things stand in a tree: paths, places of diagnostics, what refers to what."""
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from . import _core
@@ -36,8 +36,13 @@ def words_in(value: Any) -> list[str]:
     return []
 
 
-def arranged(content: Mapping[str, Any], kind: str = "") -> dict[str, Any]:
-    """first, second -> between (or joints), and points where they are (body, point)."""
+def _no_point(part: object) -> bool:
+    return False
+
+
+def arranged(content: Mapping[str, Any], kind: str = "",
+             is_point: Callable[[object], bool] = _no_point) -> dict[str, Any]:
+    """first, second -> between (or joints), and points where they are (body, point) or points."""
     shape = content.get("shape")
     made: dict[str, Any] = {"shape": None} if shape is not None else {}
     made.update({key: value for key, value in content.items() if key not in ("first", "second", "name", "shape")})
@@ -48,6 +53,8 @@ def arranged(content: Mapping[str, Any], kind: str = "") -> dict[str, Any]:
             made[key] = value
     elif shape is not None:
         made["shape"] = shape
+    if is_point(content.get("body")) and content.get("point") is None and "point" in content:
+        made["body"], made["point"] = None, content["body"]   # which tells its body
     both = [content[key] for key in ("first", "second") if content.get(key) is not None]
     if not both:
         return made
@@ -57,6 +64,9 @@ def arranged(content: Mapping[str, Any], kind: str = "") -> dict[str, Any]:
         raise fault("missing-key", f"the {lacking} {'joint' if is_joint else 'body'} is None",
                     help="" if is_joint else "its own name comes first, then two bodies: (\"pivot\", \"world\", rod, ..); "
                     "the fixed frame is called \"world\"")
+    if all(is_point(end) for end in both) and content.get("points") is None and "points" in content and len(both) == 2:
+        made["points"] = tuple(both)
+        return made
     pairs = [end if isinstance(end, (tuple, list)) and len(end) == 2 else (end, None) for end in both]
     points = [point for _, point in pairs if point is not None]
     if points and kind in ("rod", "spring"):   # whose ends are the reference points where nothing is said
@@ -76,7 +86,7 @@ def arranged(content: Mapping[str, Any], kind: str = "") -> dict[str, Any]:
 
 def path_of(kind: str, table: Mapping[str, Any], index: int = -1) -> str:
     if kind not in KINDS:
-        return kind
+        return f"{kind}[{index + 1}]" if index >= 0 else kind
     return f"{kind}[{table.get('name') or (default_name(kind, table) if index < 0 else index + 1)}]"
 
 
@@ -108,6 +118,9 @@ def of_table(d: dict[str, Any], kind: str, table: Table) -> Diagnostic:
 
 def diagnostic_of(d: dict[str, Any], root: Mapping[str, Any]) -> Diagnostic:
     """Of the compiled reader, with the place in the user's file."""
+    if d["file"]:   # which the model includes
+        place = Place(d["file"], d["line"], d["column"], d["length"])
+        return Diagnostic(d["severity"], d["code"], d["message"], "include", d["note"], d["help"], place, d["source_line"])
     kind, index, _, _ = d["location"]
     value = root.get(kind)
     if isinstance(value, list) and 0 <= index < len(value) and isinstance(value[index], Table):

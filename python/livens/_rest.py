@@ -60,9 +60,13 @@ class RestJoint(_Coordinates):
     """Of the joint on its second body about the joint point, N m, world axes, shape (3,)."""
     unique: bool
     """False if other joints of a closed loop could carry part of the reactions; the smallest ones are given."""
+    effort: float
+    """For a drive along a coordinate: its force or torque along it, N or N m; nan otherwise."""
 
-    def __init__(self, name: str, coordinates: Mapping[str, float], force: Floats, torque: Floats, unique: bool) -> None:
+    def __init__(self, name: str, coordinates: Mapping[str, float], force: Floats, torque: Floats, unique: bool,
+                 effort: float) -> None:
         self.name, self.coordinates, self.force, self.torque, self.unique = name, coordinates, force, torque, unique
+        self.effort = effort
 
     def __repr__(self) -> str:
         values = "".join(f"{name} = {value:.6g}, " for name, value in self.coordinates.items())
@@ -173,7 +177,7 @@ class Equilibrium(_ByName):
         def made(i: int) -> RestJoint:
             values = {word: float(self._found["coordinate"][at]) for word, at in columns[i][1].items()}
             return RestJoint(columns[i][0], values, self._found["force"][i], self._found["torque"][i],
-                             bool(self._found["unique"][i]))
+                             bool(self._found["unique"][i]), float(self._found["effort"][i]))
         return Parts("joint", [name for name, _ in columns], made)
 
     @property

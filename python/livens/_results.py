@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _core
-from ._errors import fault, file_name, make_way
+from ._errors import fault, file_name, make_way, stack_level
 from ._other_names import refused_ending
 from ._parts import Floats
 from ._series import Series
@@ -387,8 +388,8 @@ class Solution(Series):
             with tempfile.TemporaryDirectory() as folder:   # it copies the variables of a result
                 self.save(result := os.path.join(folder, "run.nc"))
                 self._result.export_to(chosen, result, *options)
-        else:
-            self._result.export_to(chosen, "", *options)
+        elif doubt := self._result.export_to(chosen, "", *options):
+            warnings.warn(doubt, UserWarning, stacklevel=stack_level())
 
     def __reduce__(self) -> tuple[Any, ...]:
         self._refuse_functions("pickled")

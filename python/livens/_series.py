@@ -10,7 +10,7 @@ import numpy.typing as npt
 from ._entries import Entry, UnknownName, unknown_name
 from ._errors import fault
 from ._other_names import SOLUTION, unknown
-from ._parts import UNITS, BodySeries, Floats, JointSeries, LoadSeries, Part, Parts, SensorSeries
+from ._parts import UNITS, BodySeries, Floats, JointSeries, LoadSeries, Part, Parts, PointSeries, SensorSeries
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -162,18 +162,34 @@ class Series:
             return LoadSeries(self, loads[i][0], i, first, loads[i][2])
         return Parts("load", [name for name, _, _ in loads], make)
 
+    @property
+    def points(self) -> Parts[PointSeries]:
+        """All named points by name."""
+        points = self._result.points
+        bodies = self.bodies
+
+        def make(i: int) -> PointSeries:
+            name, body, place = points[i]
+            return PointSeries(self, name, i, None if body is None else bodies[body], np.array(place))
+        return Parts("point", [name for name, _, _ in points], make)
+
+    def _groups_of_parts(self) -> list[Parts[Any]]:
+        return [self.bodies, self.joints, self.loads, self.sensors, self.points]
+
     def __getitem__(self, name: str | Entry | Part) -> Any:
-        """The body, joint, load or sensor of that name (or handle)."""
-        groups: list[Parts[Any]] = [self.bodies, self.joints, self.loads, self.sensors]
+        """The body, joint, load, sensor or point of that name (or handle)."""
+        groups = self._groups_of_parts()
         if isinstance(name, Entry):
-            kinds = {"body": 0, "joint": 1, "drive": 1, "load": 2, "sensor": 3}
+            kinds = {"body": 0, "joint": 1, "drive": 1, "load": 2, "sensor": 3, "point": 4}
             return groups[kinds[name._key]][name.name]
         word = name.name if isinstance(name, Part) else name
         found = [group for group in groups if word in group]
         if len(found) == 1:
             return found[0][word]
+        if word not in groups[0] and word not in groups[3] and (word, "joint") in [load[:2] for load in self._result.loads]:
+            return groups[1][word]   # what the joint states itself is its effort
         if found:
-            ways = [f".{kind}['{word}']" for kind, group in zip(("bodies", "joints", "loads", "sensors"), groups)
+            ways = [f".{kind}['{word}']" for kind, group in zip(("bodies", "joints", "loads", "sensors", "points"), groups)
                     if word in group]
             raise KeyError(f"several parts are called '{word}'; write {' or '.join(ways)}")
         names = [known for group in groups for known in group]
@@ -257,6 +273,10 @@ class Series:
             if attribute not in UNITS or not hasattr(type(self), attribute):
                 raise unknown_name("series", what, [n for n in UNITS if hasattr(type(self), n)])
             return getattr(self, attribute), UNITS[attribute]
+        for way in ("force", "torque"):   # "pin.force_in.crank": in axes of a body
+            joint, _, body = what.partition(f".{way}_in.")
+            if body and joint in self.joints and body in self.bodies:
+                return getattr(self.joints[joint], way + "_in")(body), UNITS[way]
         part = self[name]
         try:
             return getattr(part, attribute), part.unit(attribute)
@@ -264,8 +284,8 @@ class Series:
             raise unknown_name(f"array of '{name}'", attribute, list(part.arrays())) from None
 
     def __contains__(self, name: object) -> bool:
-        """Whether a body, joint, load or sensor is called so."""
-        return isinstance(name, (str, Entry, Part)) and any(name in group for group in (self.bodies, self.joints, self.loads, self.sensors))
+        """Whether a body, joint, load, sensor or point is called so."""
+        return isinstance(name, (str, Entry, Part)) and any(name in group for group in self._groups_of_parts())
 
     __iter__ = None   # names or instants? Python would try numbers
 

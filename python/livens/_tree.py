@@ -18,7 +18,7 @@ from ._values import Shape
 
 INTEGER, ROW, TABLE, TABLES = 3, 9, 11, 12   # of Form in schema.h
 NUMERIC = (INTEGER, 4, ROW, 10)
-KINDS = ("body", "joint", "drive", "load", "sensor")   # arrays of tables in the root
+KINDS = ("body", "point", "joint", "drive", "load", "sensor")   # arrays of tables in the root
 
 
 class Table(dict[str, Any]):
@@ -275,21 +275,30 @@ def toml_lines(table: Mapping[str, Any]) -> Iterator[str]:
 
 def toml(root: Mapping[str, Any]) -> str:
     """A scenario as text: what has no header first, ``format`` before all, then tables in the schema's order."""
+    return "\n".join(_scenario_lines(root, "")) + "\n"
+
+
+def _scenario_lines(root: Mapping[str, Any], path: str) -> list[str]:
+    """``path``: of a model inside, ``include.model.``."""
     order = [key["name"] for key in schema().root["keys"]]
     names = sorted(root, key=lambda name: order.index(name) if name in order else len(order))
     headed = {key["name"] for key in schema().root["keys"] if key["child"] is not None} | {"parameters"}
     lines = [line for name in names for line in toml_lines({name: root[name]})
              if name not in headed or not isinstance(root[name], (dict, list))]
     for name in names:
-        value = root[name]
+        value, header = root[name], path + _key(name)
         if name not in headed:
             continue
         if isinstance(value, dict):
-            lines += ["", f"[{_key(name)}]", *toml_lines(value)]
+            lines += ["", f"[{header}]", *toml_lines(value)]
         elif isinstance(value, list):
             for item in value:
-                lines += ["", f"[[{_key(name)}]]", *toml_lines(item)]
-    return "\n".join(lines) + "\n"
+                inside = item.get("model") if name == "include" else None
+                own = {key: of for key, of in item.items() if not (isinstance(inside, dict) and key == "model")}
+                lines += ["", f"[[{header}]]", *toml_lines(own)]
+                if isinstance(inside, dict):
+                    lines += ["", f"[{header}.model]", *_scenario_lines(inside, f"{header}.model.")]
+    return lines
 
 
 # Texts as trees.
@@ -318,7 +327,8 @@ def diagnostics_of_text(found: list[dict[str, Any]], file: str, text: str) -> li
     made = []
     for d in found:
         line = d["line"]
-        source = lines[line - 1].rstrip("\r") if 0 < line <= len(lines) else ""
-        place = Place(file or "<text>", line, d["column"] if line else 0, d["length"])
+        is_included = d["file"] not in ("", file)
+        source = d["source_line"] or (lines[line - 1].rstrip("\r") if 0 < line <= len(lines) and not is_included else "")
+        place = Place(d["file"] if is_included else file or "<text>", line, d["column"] if line else 0, d["length"])
         made.append(Diagnostic(d["severity"], d["code"], d["message"], "", d["note"], d["help"], place, source))
     return made

@@ -33,11 +33,13 @@ static void translate(const std::exception_ptr& thrown, void*)
 
 NB_MODULE(_core, m)
 {
-    // A function of Python that is a load, and knows the model that it is in, lives until the end: no fault of users.
+    // A function of Python that is a load, and knows the model that it is in, lives until the end: no fault
+    // of users.
     nb::set_leak_warnings(false);
     m.attr("version") = livens::version;
     nb::register_exception_translator(translate);
     livens::python::add_tree(m);
+    livens::python::add_importing(m);
     livens::python::add_solving(m);
     livens::python::add_results(m);
     livens::python::add_rest(m);

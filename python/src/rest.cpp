@@ -8,6 +8,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "livens/diagnostics/quantities.h"
 #include "livens/io/known_state.h"
 #include "livens/multibody/motion.h"
 #include "livens/statics/equilibrium.h"
@@ -91,7 +92,7 @@ nb::dict found(const Model& model, const Equilibrium& at)
     d["iterations"] = at.iterations;
     d["residual"] = at.residual;
     d["notes"] = at.notes;
-    Vectors positions, quaternions, coordinates, forces, torques;
+    Vectors positions, quaternions, coordinates, forces, torques, efforts;
     for (int b = 0; b < model.n_bodies(); ++b) {
         const Matrix34& X = at.state.X[static_cast<std::size_t>(b)];
         append(positions, X.column(0));
@@ -115,6 +116,8 @@ nb::dict found(const Model& model, const Equilibrium& at)
         if (at.is_found) reaction = joint_reaction(now, static_cast<int>(j), at.state.X, at.multipliers);
         append(forces, reaction.force);
         append(torques, reaction.torque);
+        const auto effort = drive_effort(joint);
+        efforts.push_back(effort ? effort->of(joint, at.state.X, reaction) : nan);
         unique.append(at.is_found && at.joint_is_unique[j]);
     }
     const auto n_bodies = static_cast<std::size_t>(model.n_bodies()), n_joints = model.joints().size();
@@ -126,6 +129,7 @@ nb::dict found(const Model& model, const Equilibrium& at)
     d["coordinate"] = array(std::move(coordinates), {n_coordinates});
     d["force"] = array(std::move(forces), {n_joints, 3});
     d["torque"] = array(std::move(torques), {n_joints, 3});
+    d["effort"] = array(std::move(efforts), {n_joints});
     d["unique"] = unique;
     d["turned"] = turned;
     return d;

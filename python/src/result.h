@@ -2,8 +2,10 @@
 // A run that Python holds: what its arrays are views of.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <nanobind/nanobind.h>
@@ -35,8 +37,8 @@ using Times = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::c
 void add_solving(nb::module_& m);
 void add_results(nb::module_& m);
 void add_rest(nb::module_& m);
-/// The columns of drives_at().
-std::vector<std::string> drive_columns(const Result& r);
+/// The columns of drives_at(), and their units.
+std::map<std::string, std::string> drive_columns(const Result& r);
 /// Methods that sample a motion.
 void add_samples(nb::class_<Result>& result);
 

@@ -7,6 +7,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -118,6 +119,21 @@ nb::list sensors(const Result& r)
         nb::list components;
         for (const SensorComponent& c : sensor.components) components.append(nb::make_tuple(c.name, c.unit));
         all.append(nb::make_tuple(sensor.name, sensor.type, components));
+    }
+    return all;
+}
+
+/// Of named points: name, body (None: the world) and place in its axes.
+nb::list points(const Result& r)
+{
+    nb::list all;
+    const Model& model = r.scenario->model;
+    for (const NamedPoint& point : model.points()) {
+        const Vector3& p = point.position;
+        all.append(nb::make_tuple(
+            point.name,
+            point.body == world ? nb::none() : nb::object(nb::str(model.body_name(point.body).c_str())),
+            nb::make_tuple(p[0], p[1], p[2])));
     }
     return all;
 }
@@ -234,8 +250,8 @@ Result from_bytes(const nb::bytes& bytes)
     return with_scenario(read_run_from(source), "pickle");
 }
 
-/// Throws what Python's signals throw.
-void export_to(const Result& r, const std::string& format, const std::string& result, const std::string& file,
+/// What is doubtful of it. Throws what Python's signals throw.
+std::string export_to(const Result& r, const std::string& format, const std::string& result, const std::string& file,
                bool force, int instants, const std::vector<std::string>& units, const nb::dict& picture)
 {
     PictureOptions o;
@@ -259,14 +275,19 @@ void export_to(const Result& r, const std::string& format, const std::string& re
         return PyErr_CheckSignals() == 0;
     };
     const Patience patience(goes_on);
+    std::string doubt;
     try {
-        for (const ExportFormat& f : export_formats())
-            if (f.word == format)
-                f.write(file, {result, *r.scenario, r.run, force, static_cast<Instants>(instants), units, o});
+        const ExportInput input{result, *r.scenario, r.run, force, static_cast<Instants>(instants), units, o};
+        for (const ExportFormat& f : export_formats()) {
+            if (f.word != format) continue;
+            if (f.doubt != nullptr) doubt = f.doubt(input);
+            f.write(file, input);
+        }
     } catch (const Stopped&) {
         const nb::gil_scoped_acquire lock;
         throw nb::python_error();
     }
+    return doubt;
 }
 
 }   // namespace
@@ -310,6 +331,7 @@ void add_results(nb::module_& m)
         .def_prop_ro("body_names", [](const Result& r) { return r.run.body_names; })
         .def_prop_ro("joints", &joints)
         .def_prop_ro("sensors", &sensors)
+        .def_prop_ro("points", &points)
         .def_prop_ro("loads", &loads)
         .def_prop_ro("figures", &figures)
         .def_prop_ro("is_damping", [](const Result& r) { return r.run.motion.damps(); })

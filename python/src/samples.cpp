@@ -67,8 +67,8 @@ private:
     std::map<std::string, Column> columns_;
 };
 
-/// From which side an instant is seen: those of `before` that are not zero are seen from the left; of a single
-/// instant or where there is no list, from the right.
+/// From which side an instant is seen: those of `before` that are not zero are seen from the left; of a
+/// single instant or where there is no list, from the right.
 Side side_of(const Times& before, std::size_t i)
 {
     return before.size() > i && before.data()[i] != 0 ? Side::left : Side::right;
@@ -164,7 +164,8 @@ nb::dict bodies_at(const Result& r, const Times& times)
     const Model& model = r.scenario->model;
     std::vector<Vector4> previous = upright(model);
     declare_bodies(c, previous.size());
-    at_all(times, [&](double t, std::size_t) { add_bodies(c, sample_bodies(model, r.run.motion, t), previous); });
+    at_all(times,
+           [&](double t, std::size_t) { add_bodies(c, sample_bodies(model, r.run.motion, t), previous); });
     return c.take();
 }
 
@@ -232,7 +233,8 @@ class OfStates {
 public:
     OfStates(const Result& r, std::size_t n_times)
         : c(n_times), model_(with_load_sensors(r.scenario->model)), readings_(model_, r.run.motion),
-          coordinates_(model_, r.run.motion, coordinates_of(model_)), turns_(model_, r.run.motion)
+          coordinates_(model_, r.run.motion, coordinates_of(model_)), turns_(model_, r.run.motion),
+          accelerations_(model_, r.run.motion)
     {
         const std::size_t n = coordinates_of(model_).size();
         c.declare("coordinate", {n});
@@ -242,13 +244,14 @@ public:
         c.declare("potential", {});
     }
 
-    void add(const State& state, Side side)
+    void add(const State& given, Side side)
     {
+        const State state = accelerations_.on_joints(given);
         for (const CoordinateValue& q : coordinates_.at(state)) {
             c.add("coordinate", q.value);
             c.add("coordinate_rate", q.rate);
         }
-        for (const double x : readings_.at(state, side)) c.add("reading", x);
+        for (const double x : readings_.at(given, side)) c.add("reading", x);
         c.add("kinetic", kinetic_energy(model_, state.X, state.V));
         c.add("potential", potential_energy(model_, {state.t, side}, state.X, state.V, turns_.at(state)));
     }
@@ -260,6 +263,7 @@ private:
     SensorReadings readings_;
     FollowedCoordinates coordinates_;
     LoadTurns turns_;
+    Accelerations accelerations_;
 };
 
 nb::dict scalars_at(const Result& r, const Times& times, const Times& before)
@@ -273,7 +277,7 @@ nb::dict scalars_at(const Result& r, const Times& times, const Times& before)
 
 bool is_acceleration(const NamedQuantity& q)
 {
-    return q.of != QuantityOf::sensor && q.what.ends_with("acceleration");
+    return (q.of == QuantityOf::body || q.of == QuantityOf::coordinate) && q.what.ends_with("acceleration");
 }
 
 /// Accelerations of bodies and coordinates, and what drives do.
@@ -453,18 +457,17 @@ nb::object snapped(const Result& r, const Times& times)
 
 }   // namespace
 
-std::vector<std::string> drive_columns(const Result& r)
+std::map<std::string, std::string> drive_columns(const Result& r)
 {
-    std::vector<std::string> names;
+    std::map<std::string, std::string> names;
     const Model& model = r.scenario->model;
     if (r.run.motion.multipliers.empty() && r.run.motion.end_multipliers.empty()) return names;
     for (std::size_t j = 0; j < model.joints().size(); ++j) {
         const Joint& joint = model.joints()[j];
         if (joint.type != "drive") continue;
         if (const auto effort = drive_effort(joint))
-            names.push_back((effort->coordinate.is_angle() ? "drive_torque " : "drive_force ") +
-                            std::to_string(j));
-        names.push_back("power " + std::to_string(j));
+            names["effort " + std::to_string(j)] = effort->coordinate.is_angle() ? "N m" : "N";
+        names["power " + std::to_string(j)] = "W";
     }
     return names;
 }

@@ -79,8 +79,11 @@ ScenarioResult read_while_wanted(const std::function<ScenarioResult()>& work)
     return std::move(*result);
 }
 
-/// Whether a text may name meshes: all else is read within milliseconds.
-bool may_have_meshes(const std::string& text) { return text.find("mesh") != std::string::npos; }
+/// Whether a text may name files: all else is read within milliseconds.
+bool may_have_meshes(const std::string& text)
+{
+    return text.find("mesh") != std::string::npos || text.find("include") != std::string::npos;
+}
 
 nb::tuple build_text(const std::string& text, const std::string& file, const std::string& folder)
 {

@@ -104,6 +104,7 @@ nb::dict to_python(const Key& key, nb::dict& indices)
     d["units"] = units;
     d["fallback"] = key.fallback;
     d["required"] = key.required;
+    d["told_by"] = key.told_by;
     nb::list choices;
     for (const std::string_view word : key.choices) choices.append(word);
     d["choices"] = nb::tuple(choices);
@@ -418,8 +419,10 @@ nb::list to_python(const std::vector<Diagnostic>& diagnostics, const std::vector
         item["length"] = d.length;
         item["note"] = d.note;
         item["help"] = d.help;
+        item["file"] = d.file;
+        item["source_line"] = d.source_line;
         const bool is_known =
-            locations != nullptr && d.line > 0 && static_cast<std::size_t>(d.line) < locations->size();
+            locations != nullptr && d.file.empty() && d.line > 0 && static_cast<std::size_t>(d.line) < locations->size();
         const Location at = is_known ? (*locations)[static_cast<std::size_t>(d.line)] : Location{};
         nb::list inner;
         for (const std::string& step : at.inner) inner.append(nb::str(step.c_str(), step.size()));

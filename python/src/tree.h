@@ -52,5 +52,6 @@ nb::list to_python(const std::vector<Diagnostic>& diagnostics, const std::vector
 
 /// Functions for the module.
 void add_tree(nb::module_& m);
+void add_importing(nb::module_& m);
 
 }   // namespace livens::python

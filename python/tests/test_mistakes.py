@@ -36,7 +36,7 @@ MODEL = {
     "rod": "m['rod']", "static_equilibrium": "m.find_equilibrium()", "save": "m.to_toml", "eigenfrequencies": "m.vibration_modes()",
     "bodys": "did you mean 'bodies'?", "add_revolut": "did you mean 'add_revolute'?"}
 MODULE = {
-    "Box": "'box'", "simulate": "lv.solve", "Simulation": "lv.solve", "Hinge": "m.add_revolute(..)", "from_urdf": "docs/coming_from",
+    "Box": "'box'", "simulate": "lv.solve", "Simulation": "lv.solve", "Hinge": "m.add_revolute(..)", "load_urdf": "lv.from_urdf", "from_mjcf": "docs/coming_from",
     "deg": "\"30 deg\"", "open": "lv.load", "load_result": "lv.load_solution", "slove": "did you mean 'solve'?"}
 SOLUTION = {
     "time": "'t'", "y": "sol['rod'].position", "rod": "sol['rod']", "animate": "sol.report", "show": "sol.report", "view": "sol.report",
@@ -65,7 +65,8 @@ def test_calls_of_other_programs(pendulum: lv.Model, sol: lv.Solution) -> None:
             (lambda: m.add_load("f", "rod", value=(0, 0, 1)), "m.add_force('f', 'rod', ..)"),
             (lambda: m.add_revolute("x", "world", "rod", (0, 0, 0), (0, 1, 0)), "at=(0, 0, 0), axis=(0, 1, 0)"),
             (lambda: m.add_revolute("world", "rod", at=(0, 0, 0), axis=(0, 1, 0)), "its own name comes first"),
-            (lambda: m.add_revolute("x", "world", "rod", at=(0, 0, 0), axis=(0, 1, 0), damping=1), "m.add_spring(..)"),
+            (lambda: m.add_revolute("x", "world", "rod", at=(0, 0, 0), axis=(0, 1, 0), friction=1), "m.add_actuator(..)"),
+            (lambda: m.add_revolute("x", "world", "rod", at=(0, 0, 0), axis=(0, 1, 0), viscous_damping=1), "'damping'"),
             (lambda: m.add_revolute("x", "ground", "rod", at=(0, 0, 0), axis=(0, 1, 0)), "\"world\""),
             (lambda: m.add_joint_drive("m", "pivot", expression=lambda t: t), "is a string"),
             (lambda: m.add_body("b", lv.box(1, 1, 1, mass=1), euler=(0, 0, 1)), "quaternion = [w, x, y, z]"),
@@ -79,16 +80,16 @@ def test_calls_of_other_programs(pendulum: lv.Model, sol: lv.Solution) -> None:
             (lambda: setattr(m, "accuracy", 1e-8), "[time]"),
             (lambda: sol["rod.position"], "sol['rod'].position"),
             (lambda: sol.save("x.mat"), "ncread"), (lambda: sol.save("x.csv"), "sol.export('x.csv')"),
-            (lambda: sol.export("x.mp4"), "webm (.webm)"), (lambda: lv.load("x.urdf"), "TOML"), (lambda: lv.load("run.nc"), "load_solution"),
+            (lambda: sol.export("x.mp4"), "webm (.webm)"), (lambda: lv.load("x.urdf"), "lv.from_urdf('x.urdf')"), (lambda: lv.load("x.xml"), "TOML"), (lambda: lv.load("run.nc"), "load_solution"),
             (lambda: lv.box(1), "box(x, y, z)")):
         assert wanted in answer(call), wanted
     assert len(m.joints) == 1 and len(m.bodies) == 1 and len(m.drives) == 0
 
 
 def test_scenarios_are_answered_in_their_own_words(pendulum: lv.Model) -> None:
-    text = pendulum.to_toml() + "\n[[joint]]\nname = \"x\"\ntype = \"revolute\"\nbetween = [\"world\", \"rod\"]\ndamping = 1\n"
+    text = pendulum.to_toml() + "\n[[joint]]\nname = \"x\"\ntype = \"revolute\"\nbetween = [\"world\", \"rod\"]\nfriction = 1\n"
     for text in (text, text + "[time]\nend = 1\n"):
-        assert "[[load]] with type = \"spring\", joint = \"x\"" in answer(lambda: lv.load(text=text))
+        assert "[[load]] with type = \"actuator\", joint = \"x\"" in answer(lambda: lv.load(text=text))
 
 
 def test_files_of_results_may_have_any_other_name(sol: lv.Solution, tmp_path: Path) -> None:

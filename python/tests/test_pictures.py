@@ -51,9 +51,10 @@ def test_videos_and_stills(rod: lv.Solution, tmp_path: pathlib.Path) -> None:
     rod.export(still, size=(160, 100))
     rod.export(later, size=(160, 100), start=0.5, names=True)
     assert struct.unpack_from(">II", still.read_bytes(), 16) == (160, 100) and still.read_bytes() != later.read_bytes()
-    rod.export(tmp_path / "x.gif", size=(96, 64), fps=5, duration=1)
+    with pytest.warns(UserWarning, match="frames are 0.4 s of the motion apart"):
+        rod.export(tmp_path / "x.gif", size=(96, 64), fps=5, duration=1)
     assert struct.unpack_from("<HH", (tmp_path / "x.gif").read_bytes(), 6) == (96, 64)
-    rod.export(tmp_path / "motion.webm", size=(160, 100), fps=5, duration=1, view="front", dark=True)
+    rod.export(tmp_path / "motion.webm", size=(160, 100), fps=5, duration=1, end=0.5, view="front", dark=True)
     assert (tmp_path / "motion.webm").read_bytes()[:4] == b"\x1a\x45\xdf\xa3"
     rod.export(still, size=(160, 100))   # what is livens' own
     later.write_bytes(b"of somebody else")

@@ -340,3 +340,44 @@ def test_what_keeps_bodies_rigid() -> None:
         assert np.isnan(skew.mean_stress).all()
         assert np.allclose(np.swapaxes(skew.directors, -1, -2), np.swapaxes(rod.directors, -1, -2) @ C, atol=1e-12)
     assert sol["rod"].unit("mean_stress") == "Pa" and not sol["rod"].mean_stress.flags.writeable
+
+
+def test_what_acts_along_a_coordinate_is_its_effort() -> None:
+    m = lv.Model("arm", gravity=(0, 0, -9.81))
+    arm = m.add_body("arm", lv.box(1, 0.1, 0.1, mass=2), position=(0.5, 0, 0))
+    m.add_revolute("hinge", "world", arm, at=(0, 0, 0), axis=(0, 1, 0), damping=0.3, stiffness="4 N m/rad", rest="10 deg",
+                   limits=(-np.inf, "40 deg"))
+    wheel = m.add_body("wheel", lv.cylinder(0.1, 0.02, mass=1), position=(0, 2, 0))
+    m.add_cylindrical("pipe", "world", wheel, at=(0, 2, 0), axis=(0, 0, 1), angle={"damping": 0.1},
+                      displacement={"stiffness": 100})
+    m.add_actuator("push", "pipe", coordinate="angle", value=0.2)
+    lid = m.add_body("lid", lv.box(1, 0.1, 0.1, mass=1), position=(0.5, 4, 0))
+    m.add_spherical("ball", "world", lid, at=(0, 4, 0), damping=0.2)
+    assert lv.load(text=m.to_toml()) == m and "limits = [-inf, \"40 deg\"]" in m.to_toml()
+    sol = lv.solve(m, 1)
+    hinge = sol["hinge"]
+    assert hinge.angle.max() > np.radians(40), "it reaches its limit"
+    inside = hinge.angle < np.radians(40)
+    assert np.allclose(hinge.effort[inside], (-4 * (hinge.angle - np.radians(10)) - 0.3 * hinge.angle_rate)[inside], atol=1e-12)
+    assert (hinge.effort == sol.loads["hinge"].effort).all() and hinge.unit("effort") == "N m"
+    assert sol.loads["hinge"].penetration.max() == pytest.approx(hinge.angle.max() - np.radians(40), abs=1e-12)
+    assert any(note.startswith("'hinge' was beyond its limits by ") for note in sol.notes)
+    assert np.allclose(sol["pipe"].angle_effort, -0.1 * sol["pipe"].angle_rate, atol=1e-14)
+    assert np.allclose(sol["pipe"].displacement_effort, -100 * sol["pipe"].displacement, atol=1e-12)
+    assert (sol["push"].effort == 0.2).all()
+    w = sol["lid"].angular_velocity
+    assert np.allclose(np.linalg.norm(np.stack([sol.loads["ball"][f"torque_{x}"] for x in "xyz"], axis=1), axis=1),
+                       0.2 * np.linalg.norm(w, axis=1), atol=1e-12)
+    assert not hasattr(sol["ball"], "effort") and "effort" in hinge.arrays()
+    assert np.abs(hinge.effort).max() <= -sol.peak("hinge.effort").value < 1.05 * np.abs(hinge.effort).max()
+
+
+def test_a_drive_holds_with_its_effort_at_rest() -> None:
+    m = lv.Model("arm", gravity=(0, 0, -9.81))
+    arm = m.add_body("arm", lv.box(1, 0.1, 0.1, mass=2), position=(0.5, 0, 0))
+    m.add_revolute("hinge", "world", arm, at=(0, 0, 0), axis=(0, 1, 0))
+    m.add_joint_drive("motor", "hinge", value=0)
+    rest = m.find_equilibrium()
+    assert rest["motor"].effort == pytest.approx(-2 * 9.81 * 0.5, abs=1e-12) and np.isnan(rest["hinge"].effort)
+    sol = lv.solve(m, 0.1)
+    assert np.allclose(sol["motor"].effort, rest["motor"].effort, atol=1e-9) and sol["motor"].unit("effort") == "N m"

@@ -108,7 +108,7 @@ def test_sensors_read_accelerations() -> None:
     assert np.stack([s["rim"].ax, s["rim"].ay], axis=1) == pytest.approx(expected, abs=2e-6)
     assert s["shaft"].angle_acceleration == pytest.approx(np.ones(41), abs=1e-9)
     inertia = 0.5 * 0.2**2
-    assert s["motor"].drive_torque == pytest.approx(inertia * np.ones(41), abs=1e-7)
+    assert s["motor"].effort == pytest.approx(inertia * np.ones(41), abs=1e-7)
     assert s["motor"].power == pytest.approx(inertia * w, abs=1e-6)
     assert sol.peak("shaft.angle_rate", unit="rpm").value == pytest.approx(3 * 30 / np.pi)
 
@@ -162,6 +162,28 @@ def test_orientations() -> None:
         assert body.angle_to(names[0]) == pytest.approx(seen.magnitude(), abs=1e-7)
     with pytest.raises(lv.InputError, match="yaw"):
         some[names[0]].euler("zzy")
+
+
+def test_reactions_in_axes_of_bodies_and_points_have_peaks(rod: lv.Solution) -> None:
+    t = np.linspace(0, 10, 20001)
+    along = rod(t)["pivot"].force_in("rod")
+    for i, x in enumerate("xyz"):
+        of = rod.extremes(f"pivot.force_in.rod.{x}")
+        assert (of.min, of.max) == pytest.approx((along[:, i].min(), along[:, i].max()), abs=0.05), x
+        assert np.array_equal(rod(t)._array(f"pivot.force_in.rod.{x}")[0], along[:, i])
+    assert rod.peak("pivot.force_in.rod").value == pytest.approx(rod.peak("pivot.force").value)
+    assert abs(rod.extremes("pivot.force.x").max - rod.extremes("pivot.force_in.rod.x").max) > 1, "other axes (control)"
+    assert not any("_in." in name for name in rod.peaks())
+    m = lv.Model(gravity=(0, 0, -9.81))
+    top = m.add_body("top", lv.sphere("10 cm", mass=1), angular_velocity=(0, 0, 2))
+    m.add_point("rim", top, position=(0.1, 0, 0))
+    m.add_point_sensor("eye", "top")
+    sol = lv.solve(m, 1)
+    assert sol.peak("rim.acceleration").value == pytest.approx(np.hypot(0.4, 9.81))
+    with pytest.raises(lv.InputError, match=r"there are 'eye\.x'"):
+        sol.peak("eye.acceleration")
+    with pytest.raises(lv.InputError, match=r"pivot\.force_in\.rod"):
+        rod.peak("pivot.force_in.rdo")
 
 
 def test_wrong_names_and_units_are_answered(rod: lv.Solution) -> None:

@@ -397,3 +397,20 @@ def test_warnings_of_models_are_shown_once(pendulum: lv.Model) -> None:
         lv.solve(pendulum, 1, elements=10)
         lv.solve(pendulum, 1, elements=10)
     assert [w.category for w in seen] == [lv.ModelWarning] and "load-never-acts" in str(seen[0].message)
+
+
+def test_a_motor_alone_moves_the_start(pendulum: lv.Model) -> None:
+    pendulum.add_joint_drive("motor", "pivot", rate="60 rpm")
+    with pytest.warns(lv.ModelWarning, match="start-driven") as seen:
+        sol = lv.solve(pendulum, 0.1, elements=4)
+    assert len(seen) == 1 and "'motor'" in str(seen[0].message)
+    assert abs(sol["pivot"].angle_rate - 2 * np.pi).max() < 1e-12
+    asked = pendulum.copy()
+    asked.start.initial = "project"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert np.array_equal(lv.solve(asked, 0.1, elements=4)["pivot"].angle, sol["pivot"].angle)
+    refused = pendulum.copy()
+    refused["rod"].velocity = (0, 0, 0)   # a word on velocities: nothing is guessed
+    with pytest.raises(lv.InputError, match="start-velocity"):
+        lv.solve(refused, 0.1, elements=4)

@@ -22,9 +22,11 @@ export function build_about(host: HTMLElement, run: Run, program: string, notice
   const { meta } = run,
     card = (title: string, ...children: (Node | string)[]) =>
       element("section", { class: "card" }, element("h2", {}, title), ...children);
-  const curves = meta.curves.every
-    ? ""
-    : " The run has more elements than are shown in plots of the program\u2019s series: between every few elements they are straight lines.";
+  const { every, loss = 0 } = meta.curves;
+  const curves =
+    every && loss === 0
+      ? ""
+      : ` These series need more instants than a page has room for: ${every ? "elements have fewer nodes or parts than they need" : "between every few elements they are straight lines"}, off by up to ${rough(loss)} of what they reach where it was looked at.`;
   const quality = meta.quality.every ? "" : " Series of quality show the largest of neighbouring elements.";
   host.append(
     card(
@@ -33,7 +35,7 @@ export function build_about(host: HTMLElement, run: Run, program: string, notice
       element(
         "p",
         {},
-        `Velocities are the derivatives of these polynomials. Energies, reactions, coordinates of joints, forces of loads and sensors were taken by livens at the nodes of polynomials in each element, in single precision, and are evaluated between them.${curves}${quality} Reactions inside elements are interpolated multipliers, at their ends of the acceleration level.`,
+        `Velocities are the derivatives of these polynomials. Energies, reactions, coordinates of joints, forces of loads and sensors were taken by livens at the nodes of polynomials in each element, in single precision, and are evaluated between them.${curves}${quality} Reactions follow from the equations of motion, inside elements in the state of the polynomials, put onto the joints.`,
       ),
       ...meta.bodies.flatMap(({ name, thinned }) =>
         thinned

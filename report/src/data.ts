@@ -101,7 +101,7 @@ export interface Meta {
   shapes: number;
   gravity: Vector;
   length: number;
-  curves: { every: boolean; nodes: number[] };
+  curves: { every: boolean; loss?: number; nodes: number[] }; // loss: between nodes, of the range of a series
   channels: Channel[];
   quality: { bounds: Record<string, number>; worst_body: number; every: boolean; series: string[] };
   arrays: Record<string, ["f8" | "f4" | "u4", number]>;

@@ -61,7 +61,7 @@ class Report {
     say_verdict(run);
     this.picture = new Picture(run, this.time, signal, kept?.seen ?? null);
     this.list = new PlotList(run, this.time, kept?.choices ?? null);
-    this.playback = new Playback(this.time);
+    this.playback = new Playback(run, this.time);
     this.scrub = new Scrub(this.time, motion.ends, () => this.playback.stop());
     new Save(this.picture, this.time, this.playback, run.meta.name);
     const show = (second: Run | null) => this.picture.compare(second);

@@ -175,6 +175,11 @@ export class Curves {
     this.basis = new Basis(meta.curves.nodes);
     this.count = Math.max(this.ends.length - 1, 1) * meta.curves.nodes.length;
   }
+  /** s, between neighbouring instants in the mean. */
+  get step(): number {
+    const n = this.ends.length - 1;
+    return (this.ends[n] - this.ends[0]) / (n * Math.max(this.basis.nodes.length - 1, 1));
+  }
   at(channel: number, t: number): number {
     const e = element_of(this.ends, t),
       h = this.ends[e + 1] - this.ends[e],

@@ -2,6 +2,7 @@
 // Plots over time that are linked: the instant shown, what is zoomed into. Curves are made again for what is seen.
 import uPlot from "uplot";
 import { framed, heading, sheet, type Columns, type Figure } from "./figure";
+import { element_of } from "./motion";
 import { decades, near, padded, power } from "./scales";
 import { element, number, steady } from "./text";
 import { colour, theme } from "./theme";
@@ -25,12 +26,43 @@ export interface PlotOptions {
   mark?: { t: number; label: string }; // an upright line
   height?: number;
   hidden?: string[]; // names of lines
+  grain?: Grain;
   remove?: () => void;
 }
+/** What a motion is resolved by. */
+export interface Grain {
+  ends: ArrayLike<number>; // of time elements
+  of_each: number; // instants that show all of an element
+}
 
-const samples = 900;
+const columns = 900; // of a plot
+const most_of_column = 100; // instants
 const usual_height = 148; // px
 const font = (scale: number) => `${11 * scale}px system-ui, sans-serif`;
+
+/** The least and the largest of a column, the earlier one first; what is no number is left out. */
+function extremes(values: (number | null)[]): (number | null)[] {
+  let low = -1,
+    high = -1;
+  values.forEach((v, i) => {
+    if (v === null) return;
+    if (low < 0 || v < values[low]!) low = i;
+    if (high < 0 || v > values[high]!) high = i;
+  });
+  if (low < 0) return [null, null];
+  return low < high ? [values[low], values[high]] : [values[high], values[low]];
+}
+function reach_of(values: ArrayLike<number | null | undefined>): [number, number] {
+  let low = Infinity,
+    high = -Infinity;
+  for (let k = 0; k < values.length; ++k) {
+    const v = values[k];
+    if (v == null) continue;
+    low = Math.min(low, v);
+    high = Math.max(high, v);
+  }
+  return [low, high];
+}
 
 export class Plot implements Figure {
   readonly box: HTMLElement;
@@ -53,10 +85,11 @@ export class Plot implements Figure {
       { title, remove, picture: () => this.picture(), table: () => this.table() },
       this.unit,
     );
-    const area = element("div", { class: "area", role: "img", "aria-label": this.described() });
+    const data = this.data(),
+      area = element("div", { class: "area", role: "img", "aria-label": this.described(data) });
     this.box = element("figure", {}, head, area, keys);
     host.append(this.box);
-    this.u = new uPlot(this.options(area.clientWidth || 400), this.data(), area);
+    this.u = new uPlot(this.options(area.clientWidth || 400), data, area);
     this.u.over.append(this.line);
     this.u.over.addEventListener("click", (e) => {
       if (this.u.select.width === 0) this.time.set(this.u.posToVal(e.offsetX, "x"));
@@ -106,38 +139,54 @@ export class Plot implements Figure {
     this.unit.textContent = unit && ` ${unit}`;
   }
 
-  private described() {
+  private described([, ...lines]: uPlot.AlignedData) {
     const { title, series } = this.o,
-      { unit, factor } = shown_in(this.o.unit),
-      [from, to] = [this.time.start, this.time.end];
-    const parts = series.slice(0, 4).map((s) => {
-      let low = Infinity,
-        high = -Infinity;
-      const see = (v: number) => {
-        if (Number.isFinite(v)) {
-          low = Math.min(low, v);
-          high = Math.max(high, v);
-        }
-      };
-      if (s.at) for (let k = 0; k <= 60; ++k) see(s.at(from + (k / 60) * (to - from)));
-      else for (let k = 0; k < s.values!.length; ++k) see(s.values![k]);
-      return `${s.label} from ${number(factor * low, 3)} to ${number(factor * high, 3)}`;
+      { unit } = shown_in(this.o.unit);
+    const parts = series.slice(0, 4).map(({ label }, i) => {
+      const [low, high] = reach_of(lines[i]);
+      return `${label} from ${number(low, 3)} to ${number(high, 3)}`;
     });
     return `${title}${unit ? `, ${unit}` : ""}, over time: ${parts.join("; ")}`;
   }
 
+  /** The instants of each column that is seen: its first, or as many as show all that happens in it. */
+  private instants(): number[][] {
+    const [from, to] = this.time.range,
+      width = (to - from) / columns,
+      { grain } = this.o;
+    const between = (a: number, b: number) =>
+      grain ? (element_of(grain.ends, b) - element_of(grain.ends, a)) * grain.of_each : 0;
+    const is_dense = between(from, to) > columns;
+    return Array.from({ length: columns }, (_, k) => {
+      const t = from + k * width,
+        n = is_dense ? Math.min(Math.max(between(t, t + width), 1), most_of_column) : 1;
+      return Array.from({ length: n }, (_unused, i) => t + (i / n) * width);
+    });
+  }
+  private value(s: Drawn, t: number): number | null {
+    const { factor } = shown_in(this.o.unit),
+      v = s.at!(t <= this.time.end ? Math.max(t, this.time.start) : this.time.end);
+    return Number.isFinite(v) && !(this.o.log && v <= 0) ? factor * v : null;
+  }
+
+  /** What is drawn: of a column with many instants, the least and the largest value, in their order. */
   private data(): uPlot.AlignedData {
     const { series, times, log } = this.o,
-      [from, to] = this.time.range,
-      { factor } = shown_in(this.o.unit);
+      { factor } = shown_in(this.o.unit),
+      to = this.time.range[1];
     const shown = (v: number) => (Number.isFinite(v) && !(log && v <= 0) ? factor * v : null);
     if (times) return [Array.from(times), ...series.map((s) => Array.from(s.values!, shown))];
-    const x = Array.from({ length: samples + 1 }, (_, k) => from + (k / samples) * (to - from));
+    const all = this.instants(),
+      beside = (all[1][0] - all[0][0]) / 4;
+    const x = all.flatMap((t) => (t.length === 1 ? t : [t[0] + beside, t[0] + 3 * beside]));
     return [
-      x,
-      ...series.map((s) =>
-        x.map((t) => shown(s.at!(t <= this.time.end ? Math.max(t, this.time.start) : this.time.end))),
-      ),
+      [...x, to],
+      ...series.map((s) => [
+        ...all.flatMap((t) =>
+          t.length === 1 ? [this.value(s, t[0])] : extremes(t.map((at) => this.value(s, at))),
+        ),
+        this.value(s, to),
+      ]),
     ];
   }
 
@@ -257,11 +306,13 @@ export class Plot implements Figure {
     c.restore();
   }
 
-  /** What is seen of the plot: its time and its lines. */
+  /** What is seen of the plot: its time and its lines, at every instant that was looked at. */
   private table(): Columns {
     const { unit } = shown_in(this.o.unit),
-      [x, ...all] = this.data(),
-      [from, to] = this.time.range;
+      { series, times } = this.o,
+      [from, to] = this.time.range,
+      x = times ? Array.from(times) : [...this.instants().flat(), to],
+      all = times ? this.data().slice(1) : series.map((s) => x.map((t) => this.value(s, t)));
     const in_sight = (column: ArrayLike<number | null | undefined>) =>
       Array.from(column, (v) => v ?? NaN).filter((_, k) => x[k] >= from && x[k] <= to);
     const lines = this.o.series.flatMap((s, i) =>

@@ -10,7 +10,8 @@ import { by_id, element, number } from "./text";
 import type { Timeline } from "./timeline";
 import { angles_now, is_angular, set_angles, type Angles } from "./units";
 
-const many_elements = 450; // more than plots of 900 points show
+const many_elements = 450; // more than are told from each other
+const seen_loss = 0.01; // of what a series reaches, or of the model
 
 /** A plot that is shown: by its name, or as one quantity over another, by theirs; and its lines that are not. */
 export interface Choice {
@@ -21,6 +22,24 @@ export interface Choice {
 export interface Choices {
   all: Choice[];
   are_usual: boolean; // nobody has chosen
+}
+
+/** What plots and picture of a long run do not show at once, or not at all. */
+function coarseness({ meta, curves }: Run): string {
+  const { elements, precision, position_loss } = meta.pose,
+    loss = meta.curves.loss ?? (meta.curves.every ? 0 : 1),
+    off = position_loss ?? Infinity;
+  return [
+    elements > many_elements &&
+      `${elements} time elements: where there is more than fits, plots show the least and the largest value; zoom in to see all of the motion.`,
+    loss > seen_loss &&
+      `Energies, forces, joints and sensors are known here every ${number(curves.step, 2)}\u00a0s and off by up to ${number(100 * Math.min(loss, 1), 2)}\u00a0% of what they reach: what oscillates faster is lost or seems slower than it is. livens export --csv has all of it.`,
+    precision === "thinned" &&
+      off > seen_loss * meta.length &&
+      `Bodies are off by up to ${number(off, 2)}\u00a0m here, as every few time elements are drawn as one.`,
+  ]
+    .filter(Boolean)
+    .join(" ");
 }
 
 export class PlotList {
@@ -36,16 +55,8 @@ export class PlotList {
   ) {
     const usual = default_plots(run).map((id) => ({ id, hidden: [] }));
     for (const choice of !kept || kept.are_usual ? usual : kept.all) this.restore(choice);
-    const n = run.meta.pose.elements,
-      coarse = "energies, forces, joints and sensors are known here every few elements";
-    if (n > many_elements)
-      by_id("adding").before(
-        element(
-          "p",
-          { class: "note" },
-          `${n} time elements: zoom in to see all of the motion${run.meta.curves.every ? "" : `; ${coarse}`}.`,
-        ),
-      );
+    const words = coarseness(run);
+    if (words) by_id("adding").before(element("p", { class: "note" }, words));
     this.fill();
     this.listen_to_zoom();
     this.offer_angles();
@@ -152,7 +163,11 @@ export class PlotList {
   private add(id: string, hidden: string[] = []) {
     const spec = this.run.specs.find((s) => s.id === id),
       phase = this.run.phases.find((s) => s.id === id);
-    if (spec) this.put({ id }, (remove) => new Plot(this.host, { ...spec, hidden, remove }, this.time));
+    if (spec)
+      this.put(
+        { id },
+        (remove) => new Plot(this.host, { ...spec, hidden, grain: this.run.grain, remove }, this.time),
+      );
     if (phase) this.add_phase(phase);
   }
 }

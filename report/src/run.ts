@@ -3,6 +3,7 @@
 import { Vector3 } from "three";
 import type { Data, Load, Meta, Numbers } from "./data";
 import { Curves, Motion } from "./motion";
+import type { Grain } from "./plot";
 import { phases_of, specs_of, type PhaseSpec, type PlotSpec } from "./specs";
 
 /** A force that is drawn, at a point of a body (-1: the world). */
@@ -66,6 +67,13 @@ export class Run {
   }
   figure(name: string): number {
     return this.meta.figures[name] ?? NaN;
+  }
+  /** Elements that are drawn may be several of the run's. */
+  get grain(): Grain {
+    const { ends } = this.motion,
+      { degree, elements } = this.meta.pose,
+      merged = Math.ceil(elements / Math.max(ends.length - 1, 1));
+    return { ends, of_each: (degree + 1) * merged };
   }
   get name() {
     return this.meta.title || this.meta.name;

@@ -34,6 +34,61 @@ const shaft_and_flap = (sensors = "") =>
   '[start]\ninitial = "project"\n[time]\nend = 2\n';
 
 const tests = {
+  async "a long motion is no other motion"() {
+    // 0.44 s a swing from rest, 450 of them: more than 900 points tell apart, and more than curves had nodes for.
+    const { run: file_of_run, page: file } = made(
+        "long",
+        'format = 1\ngravity = [0, 0, -9.81]\n[[body]]\nname = "bob"\nshape = { sphere = 0.01 }\nmass = 1\n' +
+          'position = [0.04, 0, -0.0473]\n[[joint]]\nname = "pivot"\ntype = "revolute"\nbetween = ["world", "bob"]\n' +
+          "at = [0, 0, 0]\naxis = [0, 1, 0]\n[time]\nend = 200\n",
+      ),
+      page = await open(file),
+      angles = plot(page, "Angles of joints");
+    /** What part of the height between both turning points is drawn, at places across the plot: the least. */
+    const drawn = () =>
+      angles.locator("canvas").evaluate((canvas) => {
+        const { width, height } = canvas,
+          copy = Object.assign(document.createElement("canvas"), { width, height }),
+          context = copy.getContext("2d", { willReadFrequently: true }),
+          shares = [];
+        context.drawImage(canvas, 0, 0);
+        for (let k = 0; k < 60; ++k) {
+          const x = Math.round(width * (0.3 + (0.6 * k) / 60)),
+            { data } = context.getImageData(x, 0, 1, height);
+          let n = 0;
+          for (let y = 0; y < height; ++y)
+            if (data[4 * y + 2] > data[4 * y] + 60 && data[4 * y + 3] > 200) ++n;
+          shares.push(n / height);
+        }
+        return Math.min(...shares);
+      });
+    assert.ok((await drawn()) > 0.6, "a band from one turning point to the other, everywhere");
+    assert.match(await page.locator("#plots .note").first().textContent(), /least and the largest value/);
+    const { rows } = await table(page, angles),
+      least = Math.min(...rows.map(([, x]) => x)),
+      most = Math.max(...rows.map(([, x]) => x)),
+      turn = 2 * Math.atan2(0.04, 0.0473);
+    assert.ok(Math.abs(least) < 1e-3 && Math.abs(most - turn) < 1e-3, `${least} ${most} of ${turn}`);
+    for (const k of [0.1, 0.37, 0.9].map((s) => Math.round(s * (rows.length - 1)))) {
+      const [t, angle] = rows[k],
+        there = sample(file_of_run, "--joint", "pivot", "--at", String(t)).angle;
+      assert.ok(Math.abs(angle - there) < 1e-4, `${angle} for ${there} at ${t} s`);
+    }
+    // It is not played so fast that frames skip swings, and where one wants that, it is said.
+    const speed = Number(await page.locator("#speed").inputValue());
+    assert.ok(speed >= 1 && speed <= 5, `${speed}`);
+    const words = await page.locator("#speed option").allTextContents();
+    assert.match(words.at(-1), /frames skip/);
+    assert.doesNotMatch(words[words.length - 7], /skip/);
+    // Zoomed in it is a line (the control of the band).
+    const box = await angles.locator(".u-over").boundingBox();
+    await page.mouse.move(box.x + 100, box.y + 40);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 106, box.y + 40, { steps: 3 });
+    await page.mouse.up();
+    assert.ok((await drawn()) < 0.3, "a line");
+    assert.deepEqual(page.problems, []);
+  },
   async "motors come first, and nothing flat or twice"() {
     const { page: file } = made("shaft", shaft_and_flap()),
       page = await open(file);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Hostile files. `fuzz_mutations` is deterministic; `fuzz.scenario`, `fuzz.result`, `fuzz.crafted` (headers that lie, with checksums
-# that fit) and `fuzz.round_trip` (reader against writer) are libFuzzer for twenty seconds, `fuzz.mesh_*` for ten each,
+# that fit), `fuzz.urdf` and `fuzz.round_trip` (reader against writer) are libFuzzer for twenty seconds, `fuzz.mesh_*` for ten each,
 # in the preset clang. For longer runs:
 #   cmake --preset clang -DLIVENS_SLOW_TESTS=ON && cmake --build --preset clang
 #   cd build/clang/tests && ./fuzz_scenario -max_total_time=3600 corpus-scenario ../../../tests/fuzz/corpus
@@ -14,8 +14,9 @@ if(LIVENS_FUZZ)
     set(seeds_scenario ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/corpus ${PROJECT_SOURCE_DIR}/examples)
     set(seeds_result ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/corpus_results)
     set(seeds_crafted ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/corpus_crafted)
+    set(seeds_urdf ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/corpus_urdf)
     set(seeds_round_trip)
-    foreach(target scenario result crafted round_trip)
+    foreach(target scenario result crafted urdf round_trip)
         add_executable(fuzz_${target} ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/${target}.cpp)
         target_link_libraries(fuzz_${target} PRIVATE livens_flags livens_io livens_core)
         target_include_directories(fuzz_${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)

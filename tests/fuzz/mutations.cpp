@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random damage to scenarios, the same in every run: each text ends in findings or a scenario.
+// Random damage to scenarios and URDFs, the same in every run: each text ends in findings or a scenario.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -11,17 +11,19 @@
 #include <vector>
 
 #include "fuzz/scenario.h"
+#include "fuzz/urdf.h"
 
 namespace livens {
 
 namespace {
 
-std::vector<std::string> examples()
+/// Files of these folders with that ending.
+std::vector<std::string> files_of(const std::vector<std::string>& folders, const std::string& ending)
 {
     std::vector<std::filesystem::path> files;
-    for (const char* folder : {"/examples", "/tests/fuzz/corpus"})
-        for (const auto& entry : std::filesystem::directory_iterator(std::string(LIVENS_SOURCE_DIR) + folder))
-            if (entry.path().extension() == ".toml") files.push_back(entry.path());
+    for (const std::string& folder : folders)
+        for (const auto& entry : std::filesystem::directory_iterator(LIVENS_SOURCE_DIR + folder))
+            if (entry.path().extension() == ending) files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     std::vector<std::string> texts;
     for (const std::filesystem::path& file : files) {
@@ -31,18 +33,38 @@ std::vector<std::string> examples()
     return texts;
 }
 
-/// What a text may be damaged with.
-std::vector<std::string> words()
+std::vector<std::string> damaging(const std::string& words)
 {
-    std::istringstream all(
-        "nan -inf 1e308 -1e-308 1e400 0 -0.0 9223372036854775807 1_0 0x7f \"\" \"5mm\" \"world\" [] {} [[]] true "
-        "[[1,0,0],[0,1,0]] 1979-05-27 [body.end] [[joint]] [[load]] [end] given=\"state\" type=\"universal\" "
-        "[parameters] [[repeat]] \"2*L\" \"1/0\" \"{i}\" \"{\" \"(i-1)*3mm\" \"1m+1kg\" count=10000 L=\"2*L\" "
-        "family=\"mixed\" basis=\"nurbs\" window=\"all\" shape={point=true} \\u202e \xc2\x85 \xe2\x80\xae "
-        "\xc3\xa4 \xff \x01 \"\"\" ''' . = [ ] { } , \" #");
+    std::istringstream all(words);
     std::vector<std::string> odd{"\r\n", "\t", "\n"};
     for (std::string word; all >> word;) odd.push_back(word);
     return odd;
+}
+
+/// What a scenario may be damaged with, and what a URDF.
+const std::vector<std::string>& words_of_scenarios()
+{
+    static const std::vector<std::string> all = damaging(
+        "nan -inf 1e308 -1e-308 1e400 0 -0.0 9223372036854775807 1_0 0x7f \"\" \"5mm\" \"world\" [] {} [[]] "
+        "true "
+        "[[1,0,0],[0,1,0]] 1979-05-27 [body.end] [[joint]] [[load]] [end] given=\"state\" type=\"universal\" "
+        "[parameters] [[repeat]] \"2*L\" \"1/0\" \"{i}\" \"{\" \"(i-1)*3mm\" \"1m+1kg\" count=10000 "
+        "L=\"2*L\" "
+        "family=\"mixed\" basis=\"nurbs\" window=\"all\" shape={point=true} \\u202e \xc2\x85 \xe2\x80\xae "
+        "\xc3\xa4 \xff \x01 \"\"\" ''' . = [ ] { } , \" #");
+    return all;
+}
+
+const std::vector<std::string>& words_of_urdfs()
+{
+    static const std::vector<std::string> all =
+        damaging("nan -inf 1e308 -1e-308 1e400 0 -1 <link <joint name=\"a\"/> </link> </robot> <robot> "
+                 "<!DOCTYPE <!-- --> "
+                 "<![CDATA[ ]]> <?xml?> &amp; &lol; &#0; &#xffff; base arm lift world type=\"fixed\" "
+                 "type=\"prismatic\" "
+                 "<mimic joint=\"lift\"/> <mass value=\"0\"/> xyz=\"0 0 0\" ${a} xacro:x \xff \x01 "
+                 "\xe2\x80\xae . = < > / \" ' 1,5");
+    return all;
 }
 
 /// Begin and length of a word, a line or a character of a text.
@@ -52,7 +74,9 @@ struct Piece {
 
 class Mutation {
 public:
-    Mutation(const std::vector<std::string>& texts, unsigned seed) : texts_(texts), random_(seed) {}
+    Mutation(const std::vector<std::string>& texts, const std::vector<std::string>& odd, unsigned seed)
+        : texts_(texts), odd_(odd), random_(seed)
+    {}
 
     std::string text()
     {
@@ -79,7 +103,6 @@ private:
 
     void change(std::string& text)
     {
-        static const std::vector<std::string> odd = words();
         const Piece word = piece(text, " \n,=[]{}\""), line = piece(text, "\n");
         const std::string& other = any(texts_);
         switch (below(9)) {
@@ -87,7 +110,7 @@ private:
             text.erase(below(text.size()), below(6));
             break;
         case 1:
-            text.insert(below(text.size()), any(odd));
+            text.insert(below(text.size()), any(odd_));
             break;
         case 2:
             text[below(text.size())] = static_cast<char>(below(256));
@@ -96,7 +119,7 @@ private:
             text.resize(below(text.size() + 1));
             break;
         case 4:
-            text.replace(word.begin, word.length, any(odd));
+            text.replace(word.begin, word.length, any(odd_));
             break;
         case 5:
             text.erase(line.begin, line.length);
@@ -117,27 +140,47 @@ private:
     }
 
     const std::vector<std::string>& texts_;
+    const std::vector<std::string>& odd_;
     std::mt19937 random_;
 };
 
-/// LIVENS_MUTATIONS asks for another number of them, LIVENS_FIRST_MUTATION where to begin.
-TEST(Mutations, EachEndsInFindingsOrAScenario)
+/// LIVENS_MUTATIONS asks for another number of them, LIVENS_FIRST_MUTATION where to begin. More than one in
+/// `valid_in` is to be read.
+template <class IsAnswered, class IsValid>
+void damage(const std::vector<std::string>& texts, const std::vector<std::string>& odd, unsigned usual,
+            unsigned valid_in, const IsAnswered& is_answered, const IsValid& is_valid)
 {
     const char* wanted = std::getenv("LIVENS_MUTATIONS");
-    const unsigned n = wanted != nullptr ? static_cast<unsigned>(std::atol(wanted)) : 20'000;
-    const std::vector<std::string> texts = examples();
-    ASSERT_GT(texts.size(), 10u);
+    const unsigned n = wanted != nullptr ? static_cast<unsigned>(std::atol(wanted)) : usual;
     const char* from = std::getenv("LIVENS_FIRST_MUTATION");
     const unsigned first = from != nullptr ? static_cast<unsigned>(std::atol(from)) : 0;
     unsigned n_valid = 0;
     for (unsigned seed = first; seed < first + n; ++seed) {
         if (wanted != nullptr && seed % 10'000 == 0) std::cerr << "seed " << seed << std::endl;
-        const std::string text = Mutation(texts, seed).text();
-        ASSERT_TRUE(test::is_answered(text)) << "seed " << seed << ":\n" << text;
-        n_valid += parse_scenario(text, "").scenario.has_value() ? 1 : 0;
+        const std::string text = Mutation(texts, odd, seed).text();
+        ASSERT_TRUE(is_answered(text)) << "seed " << seed << ":\n" << text;
+        n_valid += is_valid(text) ? 1 : 0;
     }
-    EXPECT_GT(n_valid, n / 20) << "hardly any text gets beyond the parser";
+    EXPECT_GT(n_valid, n / valid_in) << "hardly any text gets beyond the parser";
     EXPECT_LT(n_valid, n / 2) << "hardly any text is damaged";
+}
+
+TEST(Mutations, EachEndsInFindingsOrAScenario)
+{
+    const std::vector<std::string> texts = files_of({"/examples", "/tests/fuzz/corpus"}, ".toml");
+    ASSERT_GT(texts.size(), 10u);
+    damage(texts, words_of_scenarios(), 20'000, 20, test::is_answered,
+           [](const std::string& text) { return parse_scenario(text, "").scenario.has_value(); });
+}
+
+TEST(Mutations, EachUrdfEndsInFindingsOrAScenario)
+{
+    const std::vector<std::string> texts = files_of({"/tests/fuzz/corpus_urdf"}, ".urdf");
+    ASSERT_GT(texts.size(), 1u);
+    UrdfOptions options;
+    options.meshes = UrdfOptions::Meshes::none;
+    damage(texts, words_of_urdfs(), 20'000, 50, test::is_answered_as_urdf,
+           [&](const std::string& text) { return parse_urdf(text, "", options).scenario.has_value(); });
 }
 
 }   // namespace

@@ -38,11 +38,11 @@ PARTS = {
     "multibody": ["joints", "loads"],
     "dynamics": ["rows", "lanes", "instant", "start"],
     "spacetime": ["march", "elements", "nodal", "mixed", "accuracy"],
-    "io": ["results", "exports", "report", "scenario"],
+    "io": ["results", "exports", "report", "scenario", "import"],
     "io/scenario": ["text", "schema", "bodies", "joints", "loads", "run"],
 }
 # Folders that other rooms do not see into, but for what is named.
-INSIDES = {"detail", "scenario", "march", "elements", "nodal", "mixed", "accuracy"}
+INSIDES = {"detail", "scenario", "import", "march", "elements", "nodal", "mixed", "accuracy"}
 SEEN_INSIDE = {"livens/spacetime/mixed/bases.h"}   # words of a table, for the reader of scenarios
 
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
@@ -55,6 +55,7 @@ FOREIGN = [
     (r"netcdf|hdf5|H5", set()),   # io reads and writes it itself
     (r"fmt/", {"io", "apps"}),
     (r"zlib", {"io"}),
+    (r"tinyxml2", {"io"}),
     (r"CLI/", {"apps"}),
     (r"spdlog/", set()),
     (r"gtest/|gmock/|benchmark/", set()),

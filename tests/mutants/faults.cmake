@@ -1043,6 +1043,46 @@ livens_mutant(NAME looks_without_numbers
               MUST_FAIL Inside.LayersOfAnyWidthAreInTheEstimate
                         Inside.LawsAreFollowedToTheAccuracyThatIsTold)
 
+# A limit holds a joint that leaves it faster than its spring follows.
+livens_mutant(NAME limits_that_pull
+              FILE multibody/loads/joint_spring.cpp
+              OLD [[if (s <= 0 || g <= 0) return;]]
+              NEW [[if (s <= 0) return;]]
+              TESTS_OF unit_io
+              MUST_FAIL JointLimits.NeverPullAndStoreWhatTheyTake)
+
+# A joint that stands at a limit is thrown about by rounding.
+livens_mutant(NAME limits_to_the_last_digit
+              FILE multibody/loads/joint_spring.cpp
+              OLD [[return 1e-12 * std::max(1.0, std::abs(limit));]]
+              NEW [[return 0 * limit;]]
+              TESTS_OF unit_io
+              MUST_FAIL JointLimits.NeverPullAndStoreWhatTheyTake)
+
+# What a limit dissipates is not told.
+livens_mutant(NAME limits_without_loss
+              FILE multibody/loads/joint_spring.cpp
+              OLD [[return -stiffness * (std::max(guard(q), 0.0) - s) * outwards * q.rate;]]
+              NEW [[return 0 * s;]]
+              TESTS_OF properties
+              MUST_FAIL LoadKit/EveryLoad.Passes/joint_spring_limits_of_an_angle)
+
+# What hangs on a joint by others is left out of the inertia that its limits are made for.
+livens_mutant(NAME limits_for_one_body
+              FILE dynamics/instant/inertia_along.cpp
+              OLD [[row.drives.empty(); }))]]
+              NEW [[row.drives.empty(); }) && &joint == &model.joints()[0])]]
+              TESTS_OF unit_io
+              MUST_FAIL JointLimits.HaveTheirSpringsFromTheBodies)
+
+# The damper of all turns knows two of its axes.
+livens_mutant(NAME damper_of_two_axes
+              FILE multibody/loads/relative_spin.cpp
+              OLD [[for (int k = 0; k < 3; ++k) u[3 + k] += 0.5 * w[k];]]
+              NEW [[for (int k = 0; k < 2; ++k) u[3 + k] += 0.5 * w[k];]]
+              TESTS_OF unit_multibody
+              MUST_FAIL RotationalDamper.TurnsAgainstTheRelativeAngularVelocity)
+
 # The rate of a coordinate knows the motion of one body alone.
 livens_mutant(NAME rates_of_tapes_by_one_factor
               FILE multibody/loads/load_coordinate_on_tape.cpp
@@ -1111,10 +1151,37 @@ livens_mutant(NAME extremes_are_those_of_samples
               NEW [[return {{place.value, place.at}, 0};]]
               TESTS_OF unit_spacetime
               MUST_FAIL Extremes.AreThoseOfTheFormula)
+# States between element ends that are left where polynomials have them, and multipliers of nodes there.
+livens_mutant(NAME states_between_ends_stay_open
+              FILE diagnostics/accelerations.cpp
+              OLD [[instant.close(solved);]]
+              NEW [[(void)0;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Accelerations.StandOnTheJointsBetweenElementEnds)
+livens_mutant(NAME forces_between_ends_of_nodes
+              FILE diagnostics/joint_samples.cpp
+              OLD [[if (end < 0 && !motion.end_multipliers.empty() && !motion.accelerations.empty()) {]]
+              NEW [[if (end < -1 && !motion.accelerations.empty()) {]]
+              TESTS_OF reference
+              MUST_FAIL Driven.ForcesBetweenElementEndsAreThoseOfTheFormula)
+# Series of the page do not follow a steep law, and nobody is told.
+livens_mutant(NAME series_are_not_divided
+              FILE io/report/curves.cpp
+              OLD [[if (n_halved == 0) return true;]]
+              NEW [[if (n_halved < columns.size() * n) return true;]]
+              TESTS_OF unit_io
+              MUST_FAIL Report.SeriesFollowSteepLaws)
+# A base that is stated at rest is moved by a leg that swings.
+livens_mutant(NAME stated_velocities_not_kept
+              FILE io/scenario/run/start.cpp
+              OLD [[if (said.of_place || said.of_turn) stated.velocities.push_back(said);]]
+              NEW [[(void)said;]]
+              TESTS_OF unit_io
+              MUST_FAIL StatedVelocities.AreKeptWhereARateMovesTheStart)
 livens_mutant(NAME accelerations_forget_what_turns
               FILE diagnostics/accelerations.cpp
-              OLD [[A[12 * b + i] + instant.centripetal()[12 * b + i];]]
-              NEW [[-A[12 * b + i] + instant.centripetal()[12 * b + i];]]
+              OLD [[A[12 * b + i] + phase.instant.centripetal()[12 * b + i];]]
+              NEW [[-A[12 * b + i] + phase.instant.centripetal()[12 * b + i];]]
               TESTS_OF unit_spacetime
               MUST_FAIL Accelerations.AreWhatForcesMake)
 
@@ -1197,7 +1264,7 @@ livens_mutant(NAME shortest_unit
 # A run whose text has the file's own values: made again, it is another one.
 livens_mutant(NAME set_values_not_kept
               FILE io/scenario/scenario.cpp
-              OLD [[scenario.text = with_set_values(std::move(scenario.text), parameters);]]
+              OLD [[scenario.text = with_set_values(std::move(scenario.text), assembly.top().parameters());]]
               NEW [[;]]
               TESTS_OF unit_io
               MUST_FAIL ParametersOfScenarios.ThatAreSetStandInTheTextThatIsKept)
@@ -1217,3 +1284,83 @@ livens_mutant(NAME index_without_parentheses
               NEW [[return digits;]]
               TESTS_OF unit_io
               MUST_FAIL Repeat.CountsFromAnyFirstIndexUnderAnyName)
+
+# What turns with a model that is added stays behind by a sign.
+livens_mutant(NAME added_rows_shifted_back
+              FILE multibody/relocation.cpp
+              OLD [[moved.b_i = turned_i - outer(]]
+              NEW [[moved.b_i = turned_i + outer(]]
+              TESTS_OF properties
+              MUST_FAIL Relocated.JointsHoldWhatTheyHeld)
+
+# Velocities of what was added are seen as they are in the world.
+livens_mutant(NAME added_loads_see_world_velocities
+              FILE multibody/relocation.cpp
+              OLD [[seen.V[k] = back_.rotation * at.V[k];]]
+              NEW [[seen.V[k] = at.V[k];]]
+              TESTS_OF properties
+              MUST_FAIL Relocated/EveryMovedLoad.RunsInLanesAndPullsWhatItPulled/drag_drag)
+
+# The same on a tape: places are turned back and not moved back.
+livens_mutant(NAME added_arms_not_moved_back
+              FILE multibody/loads/load_tape.cpp
+              OLD [[v = v - vector(shift * load_.frame.position);]]
+              NEW [[(void)shift;]]
+              TESTS_OF properties
+              MUST_FAIL Relocated/EveryMovedLoad.RunsInLanesAndPullsWhatItPulled/attraction_*)
+
+# Drives and loads of an included file begin where it was stated, and not where the start has led it.
+livens_mutant(NAME included_files_do_not_settle
+              FILE io/scenario/assembly.cpp
+              OLD [[if (builder_.model().version() != stated) settle();]]
+              NEW [[;]]
+              TESTS_OF unit_io
+              MUST_FAIL Include.PartsBeginWhereTheStartHasLedThem)
+
+# A file outside of the folder is found by a way that climbs.
+livens_mutant(NAME includes_climb
+              FILE io/scenario/bodies/meshes.cpp
+              OLD [[        if (part == "..")]]
+              NEW [[        if (part == "...")]]
+              TESTS_OF unit_io
+              MUST_FAIL Include.WhatCannotBeIncludedIsOneErrorAtTheKey)
+
+# A point is taken for one of the body that the section names, whichever it is on.
+livens_mutant(NAME points_of_other_bodies
+              FILE io/scenario/bodies/named_points.cpp
+              OLD [[if (builder.body_name(point.body) == body) return true;]]
+              NEW [[return true;]]
+              TESTS_OF unit_io
+              MUST_FAIL NamedPoints.OneMistakeIsOneError)
+
+# Velocities that are stated are moved without having been asked for.
+livens_mutant(NAME stated_velocities_are_moved
+              FILE io/scenario/scenario.cpp
+              OLD [[if (fits && !assembly.states_velocity()) start_as_driven]]
+              NEW [[if (fits) start_as_driven]]
+              TESTS_OF unit_io
+              MUST_FAIL DrivenStart.IsRefusedBesideVelocitiesThatDoNotFit)
+
+# Drives that contradict are told of by the first element alone.
+livens_mutant(NAME drives_that_contradict
+              FILE dynamics/start/consistent_start.cpp
+              OLD [[if (left.relative > start_tolerance) {]]
+              NEW [[if (false && left.relative > start_tolerance) {]]
+              TESTS_OF unit_io
+              MUST_FAIL DrivenStart.HasNoVelocitiesForDrivesThatContradict)
+
+# Reactions in the axes of a body, turned the other way.
+livens_mutant(NAME reactions_turned_back
+              FILE diagnostics/quantities.cpp
+              OLD [[return transpose(project_directors(directors(X))) * v;]]
+              NEW [[return project_directors(directors(X)) * v;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Quantities.OfPointsAndInAxesOfBodiesAreThoseOfTheWorldTurned)
+
+# What series of a page lose between their instants is told as nothing.
+livens_mutant(NAME lossless_series
+              FILE io/report/curves.cpp
+              OLD [[off = std::abs(shown - truth[c]);]]
+              NEW [[off = 0 * std::abs(shown - truth[c]);]]
+              TESTS_OF unit_io
+              MUST_FAIL Report.SeriesSayWhatTheyLose)

@@ -84,7 +84,7 @@ function(livens_mutant)
         set(script run_program_mutant.cmake)
     else()
         set(libraries GTest::gtest GTest::gtest_main)
-        if(room STREQUAL "io" OR arg_TESTS_OF STREQUAL "reference")   # which reads scenarios
+        if(room STREQUAL "io" OR arg_TESTS_OF MATCHES "^(reference|unit_io)$")   # which reads scenarios
             list(PREPEND libraries livens_io)
         endif()
         set(test)

@@ -153,6 +153,14 @@ Load any_joint_damper(Random& random, const Joint&, const NamedCoordinate& coord
 {
     return joint_spring("l", coordinate, {0, 2 + random.number(), 0, 0}, X);
 }
+/// Always beyond one of its limits, where the spring pushes.
+Load limited_joint(Random& random, const Joint&, const NamedCoordinate& coordinate, const Configurations& X)
+{
+    const JointSpring law{0, 2 + random.number(), 0, 0};
+    const bool is_upper = random.number() > 0;
+    const JointLimits limits{is_upper ? -20.0 : 10.0, is_upper ? -10.0 : 20.0, 2 + random.number(), 0.05};
+    return joint_spring("l", coordinate, law, limits, X);
+}
 Load any_actuator(Random& random, const Joint&, const NamedCoordinate& coordinate, const Configurations& X)
 {
     return actuator("l", coordinate, varying(random)[0], X);
@@ -183,8 +191,7 @@ Load any_formula(Random& random, const Joint& joint, const NamedCoordinate& coor
 }
 
 /// The same, recorded: every operation that formulas have.
-Load recorded_formula(Random&, const Joint& joint, const NamedCoordinate& coordinate,
-                      const Configurations& X)
+Load recorded_formula(Random&, const Joint& joint, const NamedCoordinate& coordinate, const Configurations& X)
 {
     const std::vector<Expression> of{Expression(
         "sin(a)*b - v^2 + w*cos(a - t) + tan(a/3) + tanh(b) * exp(-b^2) + log(2 + b^2) * sqrt(1 + w^2) + "
@@ -258,13 +265,14 @@ Matrix<6, 6> positive_matrix(Random& random)
 }
 
 /// Turned by up to 1.5 rad, where both stand at about the same place, and a little deformed.
-LoadCase bushing_case(const std::string& what, int second, double size)
+LoadCase bushing_case(const std::string& what, int second, double size, bool by_angular_velocity = false)
 {
     const std::array<Matrix34, 2> X{world_configuration, world_configuration};
     return {"bushing", what,
             [=](Random& random) {
                 const auto frame = [&] { return BodyFrame{random.vector(), directors(random.rigid())}; };
                 Bushing law{positive_matrix(random), positive_matrix(random), random.matrix<6, 1>()};
+                law.by_angular_velocity = by_angular_velocity;
                 BodyFrame first = frame(), second_frame = frame();
                 second_frame.axes = first.axes;
                 return bushing("l", 0, first, second, second_frame, law, std::vector(X.begin(), X.end()));
@@ -276,6 +284,21 @@ LoadCase bushing_case(const std::string& what, int second, double size)
                     place[b] = configuration(random.vector(), R) + (0.05 * size) * random.matrix<3, 4>();
                 }
                 return place;
+            }};
+}
+
+/// However far it turns.
+LoadCase damper_case(const std::string& what, int first)
+{
+    return {"rotational_damper", what,
+            [=](Random& random) {
+                const std::vector<Matrix34> X{world_configuration, world_configuration};
+                return rotational_damper("l", first, first == 0 ? 1 : 0, 2 + random.number(), X);
+            },
+            [=](Random& random) {
+                return std::array<Matrix34, 2>{random.rigid() + 0.1 * random.matrix<3, 4>(),
+                                               first == world ? world_configuration
+                                                              : random.rigid() + 0.1 * random.matrix<3, 4>()};
             }};
 }
 
@@ -335,6 +358,8 @@ const std::vector<LoadCase>& load_cases()
                    any_joint_spring),
         along_case("joint_spring", "spring about an axis", 1, "angle", any_joint_spring),
         along_case("joint_spring", "damper about an axis", 1, "angle", any_joint_damper),
+        along_case("joint_spring", "limits of an angle", 1, "angle", limited_joint),
+        along_case("joint_spring", "limits of a slide on the world", world, "displacement", limited_joint),
         along_case("actuator", "motor", 1, "angle", any_actuator),
         along_case("actuator", "motor on the world", world, "angle", any_actuator),
         along_case("actuator", "cylinder", 1, "displacement", any_actuator),
@@ -354,6 +379,11 @@ const std::vector<LoadCase>& load_cases()
         bushing_case("bushing", 1, 1.5),
         bushing_case("bushing on the world", world, 2.5),
         bushing_case("bushing that hardly turns", 1, 0.02),
+        bushing_case("bushing damped by angular velocity", 1, 1.5, true),
+        bushing_case("bushing on the world damped by angular velocity", world, 2.5, true),
+        damper_case("rotational damper", 0),
+        damper_case("rotational damper, bodies exchanged", 1),
+        damper_case("rotational damper on the world", world),
         {"drag", "drag", any_drag},
         {"force", "force by a third body", formula_of_a_third},
         {"force", "function", any_function},

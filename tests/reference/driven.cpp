@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
+#include "livens/diagnostics/detail/sampler.h"
 #include "reference/solved.h"
 
 namespace livens::tests {
@@ -139,6 +141,56 @@ TEST(EveryDrive, MayPassZeroWhereOperationsJumpElsewhereOnly)
         ASSERT_EQ(read.diagnostics.size(), 1u) << law;
         EXPECT_EQ(read.diagnostics[0].code, "drive-jumps") << law;
     }
+}
+
+// A ram that a crank would lead, against a steep cutting force: all is driven, so that the force of the drive
+// is that of the formula at every instant, also between element ends, where the law changes faster than
+// polynomials follow.
+TEST(Driven, ForcesBetweenElementEndsAreThoseOfTheFormula)
+{
+    const double A = 0.1, f = 1, w = 2 * std::numbers::pi * f, m = 3;
+    const Solved s = solved(R"toml(
+[[body]]
+name = "ram"
+mass = 3
+inertia = [1, 1, 1]
+[[joint]]
+name = "slide"
+type = "prismatic"
+between = ["world", "ram"]
+at = [0, 0, 0]
+axis = [1, 0, 0]
+[[drive]]
+name = "crank"
+type = "joint"
+joint = "slide"
+harmonic = { amplitude = 0.1, frequency = 1 }
+[[load]]
+type = "actuator"
+joint = "slide"
+inputs = { v = "slide.displacement_rate" }
+expression = "-250*(1 + tanh(v/0.02))"
+[start]
+initial = "project"
+[time]
+end = 1
+elements = 16
+)toml");
+    const int drive = s.joint("crank");
+    double worst = 0, interpolated = 0;
+    const Motion& motion = s.solution.motion;
+    for (int i = 1; i < 400; ++i) {
+        const double t = i / 400.0, v = A * w * std::cos(w * t), a = -A * w * w * std::sin(w * t);
+        const double force = m * a + 250 * (1 + std::tanh(v / 0.02));
+        const std::vector<JointSample> joints = sample_joints(s.model, motion, t);
+        EXPECT_TRUE(joints[drive].is_acceleration_level);
+        worst = std::max(worst, std::abs(joints[drive].right.force[0] - force));
+        const int row = s.model.first_row(drive);
+        interpolated =
+            std::max(interpolated, std::abs(std::abs(field_at(motion.multipliers, motion.mesh, t)[row]) - std::abs(force)));
+    }
+    EXPECT_LT(worst, 1e-9);
+    EXPECT_GT(interpolated, 10) << "negative control: the nodes' multipliers between them";
 }
 
 }   // namespace

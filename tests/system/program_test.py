@@ -376,16 +376,16 @@ output = 0.25
         self.expect(0, "solve", "hinge.toml", "-o", "run.nc", "--csv", "run.csv")
         with (self.folder / "run.csv").open(newline="") as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual(list(rows[0])[-11:], [
+        self.assertEqual(list(rows[0])[-12:], [
             "hinge.angle [rad]", "hinge.angle_rate [rad/s]", "hinge.angle_acceleration [rad/s^2]", "hinge.force.x [N]", "hinge.force.y [N]", "hinge.force.z [N]",
-            "hinge.torque.x [N m]", "hinge.torque.y [N m]", "hinge.torque.z [N m]", "effort.force [N m]", "effort.power [W]"])
+            "hinge.torque.x [N m]", "hinge.torque.y [N m]", "hinge.torque.z [N m]", "spring.effort [N m]", "effort.effort [N m]", "effort.power [W]"])
         for row in rows:
             at = json.loads(self.expect(0, "sample", "run.nc", "--joint", "hinge", f"--at={row['t [s]']}", "--json").out)
             self.assertEqual(float(row["hinge.angle [rad]"]), at["angle"])
             self.assertEqual(float(row["hinge.angle_rate [rad/s]"]), at["angle_rate"])
             for i, x in enumerate("xyz"):
                 self.assertEqual(float(row[f"hinge.force.{x} [N]"]), at["force"][i])
-            self.assertAlmostEqual(float(row["effort.force [N m]"]), -3 * at["angle"], delta=1e-14)
+            self.assertAlmostEqual(float(row["effort.effort [N m]"]), -3 * at["angle"], delta=1e-14)
         self.assertGreater(abs(float(rows[-1]["hinge.angle [rad]"])), 0.1)
 
     def test_not_converged_writes_what_there_is(self):
@@ -577,7 +577,7 @@ degree = 3
             error = math.dist(s["force"], there["force"]) / info["largest_reaction"]
             self.assertLess(error, 2 * s["estimated_reaction_error"] + 1e-13, (at, how))
             self.assertEqual(s["source"], "solved" if how else
-                             "acceleration level" if at == "0.2" else "interpolated multipliers")
+                             "acceleration level" if at == "0.2" else "polynomial")
         self.assertGreater(told["0.2125", ()], 10 * told["0.2125", ("--exact",)])
         header, row = self.expect(0, "sample", "run.nc", "--body", "brick", "--at", "0.2", "--csv").out.splitlines()
         self.assertEqual(float(dict(zip(header.split(","), row.split(",")))["estimated_position_error [1]"]), told["0.2", ()])
@@ -626,7 +626,7 @@ degree = 6
             upper, lower = self.sample("--joint", "upper", "--at", t), self.sample("--joint", "lower", "--at", t)
             self.assertAlmostEqual(upper["force"][2], (mass + 0.5) * 9.81, delta=1e-9)
             self.assertAlmostEqual(lower["force"][2], 0.5 * 9.81, delta=1e-9)
-            self.assertEqual(upper["source"], "acceleration level" if t == "0.1" else "interpolated multipliers")
+            self.assertEqual(upper["source"], "acceleration level" if t == "0.1" else "polynomial")
             text = self.expect(0, "sample", "run.nc", "--joint", "upper", "--at", t).out
             self.assertNotIn("before", text, "where nothing jumps, one side says all")
 
@@ -689,6 +689,40 @@ degree = 6
         self.assertEqual(peaks["unit"], "deg")
         self.assertAlmostEqual(peaks["peak"]["value"] * degree, plain["peak"]["value"], delta=1e-12)
 
+    def test_names_that_are_asked_for(self):
+        text = HINGED.replace("[time]", '[[point]]\nname = "tip"\nbody = "brick"\nposition = [1, 0, 0]\n[[point]]\nname = "hook"\nbody = "world"\n'
+                              'position = [0, 0, 3]\n[[load]]\nname = "push"\ntype = "spring"\npoints = ["hook", "tip"]\n'
+                              'stiffness = 3\nfree_length = 1\n[[sensor]]\nname = "eye"\ntype = "point"\nbody = "brick"\n[time]')
+        self.solve(text)
+        joint = self.sample("--joint", "hinge", "--at", "0.1")
+        directors = self.sample("--body", "brick", "--at", "0.1")["directors"]
+        for what in ("force", "torque"):
+            self.assertEqual(list(joint[what + "_in"]), ["brick"])
+            for d, along in zip(directors, joint[what + "_in"]["brick"]):
+                self.assertAlmostEqual(sum(x * y for x, y in zip(d, joint[what])), along, delta=1e-9)
+        self.assertGreater(math.dist(joint["force_in"]["brick"], joint["force"]), 1e-3, "the control")
+        peaks = json.loads(self.expect(0, "peaks", "run.nc", "hinge.force_in.brick", "hinge.force", "--json").out)["peaks"]
+        self.assertAlmostEqual(peaks[0]["peak"]["value"], peaks[1]["peak"]["value"], delta=1e-9 * peaks[1]["peak"]["value"])
+        self.assertEqual(self.expect(0, "peaks", "run.nc").out.count("force_in"), 0)
+        self.expect(0, "export", "run.nc", "--csv", "all.csv")
+        self.assertNotIn("force_in", (self.folder / "all.csv").read_text())
+        self.expect(0, "peaks", "run.nc", "tip.acceleration", "tip.velocity.x", "hook.position.z", "push.force")
+        load = self.sample("--sensor", "push", "--at", "0.1")
+        self.assertEqual((load["type"], load["components"]), ("load", ["force", "length", "power"]))
+        self.assertEqual(self.sample("--sensor", "tip", "--at", "0.1")["type"], "point")
+        self.assertEqual(self.expect(0, "completion", "--sensors", "run.nc").out.split(), ["eye", "tip", "push"])
+        # Of a part that there is, what it has; of another kind, how it is asked for.
+        for arguments, words in ((("peaks", "run.nc", "hinge.force_in.brik"), "did you mean 'hinge.force_in.brick'?"),
+                                 (("peaks", "run.nc", "hinge.stress"), "there are 'hinge.angle', "),
+                                 (("peaks", "run.nc", "eye.acceleration"), "there are 'eye.x', "),
+                                 (("peaks", "run.nc", "nothing.at.all"), "parts known here: brick, "),
+                                 (("sample", "run.nc", "--sensor", "brick", "--at", "0"), "it is asked for by --body"),
+                                 (("sample", "run.nc", "--sensor", "hook", "--at", "0"), "a point of the world"),
+                                 (("sample", "run.nc", "--sensor", "hinge", "--at", "0"), "it is asked for by --joint"),
+                                 (("sample", "run.nc", "--body", "push", "--at", "0"), "it is asked for by --sensor"),
+                                 (("sample", "run.nc", "--joint", "nix", "--at", "0"), "it has 'hinge'")):
+            self.assertIn(words, self.expect(2, *arguments).err, arguments)
+
     def test_peaks_beside_jumps(self):
         """All is driven, and a force turns round with the motion: elements beside that are nanoseconds long, and exact
         solutions begin within rounding of it. The drive bears 500 N and m a at most, just behind the jump."""
@@ -698,7 +732,7 @@ degree = 6
                    'joint = "slide"\nharmonic = { amplitude = 0.2, frequency = 1 }\n[[load]]\nname = "cutting"\n'
                    'type = "force"\nbody = "ram"\nexpression = ["-500*step(slide.displacement_rate)", "0", "0"]\n')
         self.expect(0, "solve", "jump.toml", "-o", "jump.nc", "-q")
-        peaks = json.loads(self.expect(0, "peaks", "jump.nc", "motor.drive_force", "--json").out)["peaks"][0]
+        peaks = json.loads(self.expect(0, "peaks", "jump.nc", "motor.effort", "--json").out)["peaks"][0]
         inertia = 12 * 0.2 * (2 * math.pi) ** 2
         self.assertAlmostEqual(peaks["max"]["value"], 500 + inertia, delta=1e-4)
         self.assertAlmostEqual(peaks["min"]["value"], -inertia, delta=1e-4)

@@ -16,18 +16,26 @@ namespace [[gnu::visibility("default")]] livens {
 /// derivative of every joint's rows is zero.  (docs/theory.md, "Accelerations")
 ///
 /// At element ends these are what the motion holds there, of the method's full order. In between the
-/// equations are solved in the state that is given: of the motion's dense orders in one of sample_state(), of
-/// the full order in one of sample_exactly(). Where the joints lose rank all bodies' are nan.
+/// equations are solved in the state that is given, put onto the joints: of the motion's dense orders in one
+/// of sample_state(), of the full order in one of sample_exactly(), and exact where drives leave nothing
+/// free. Where the joints lose rank all bodies' are nan.
 class Accelerations {
 public:
     Accelerations(const Model& model, const Motion& motion);
 
     /// In a state at an instant of the motion. Where a load jumps, `side` tells before from after.
     AcceleratedState at(const State& state, Side side = Side::right) const;
+    /// The nearest state that joints and drives allow, positions and rates: between element ends; where it
+    /// cannot be had, and at ends, the state itself.
+    State on_joints(const State& state) const;
+    /// Of all rows of the model, zero of those that are not needed or do not act: what belongs to at(state),
+    /// between element ends. Empty where the joints lose rank.
+    std::vector<double> multipliers_at(const State& state) const;
 
 private:
     struct Phase;
 
+    bool is_at_end(const State& state) const;
     Phase& phase_at(double t) const;
 
     const Model& model_;

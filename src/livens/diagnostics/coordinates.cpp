@@ -201,11 +201,10 @@ std::vector<double> LoadTurns::at(const State& state) const
 
 SensorReadings::SensorReadings(const Model& model, const Motion& motion)
     : model_(model), motion_(motion), followed_(model, motion, sensed_coordinates(model)),
-      turns_(model, motion)
+      accelerations_(std::make_shared<const Accelerations>(model, motion)), turns_(model, motion)
 {
     for (const Sensor& sensor : model.sensors())
-        if (std::ranges::any_of(sensor.components, &SensorComponent::is_acceleration))
-            accelerations_ = std::make_shared<const Accelerations>(model, motion);
+        has_accelerations_ |= std::ranges::any_of(sensor.components, &SensorComponent::is_acceleration);
 }
 
 std::vector<double> SensorReadings::at(double t, Side side) const
@@ -213,12 +212,13 @@ std::vector<double> SensorReadings::at(double t, Side side) const
     return at(sample_state(motion_, t), side);
 }
 
-std::vector<double> SensorReadings::at(const State& state, Side side) const
+std::vector<double> SensorReadings::at(const State& given, Side side) const
 {
     AcceleratedState accelerated;
-    if (accelerations_) accelerated = accelerations_->at(state, side);
+    if (has_accelerations_) accelerated = accelerations_->at(given, side);
+    const State state = accelerations_->on_joints(given);
     const std::vector<CoordinateValue> coordinates =
-        followed_.at(state, accelerations_ ? &accelerated : nullptr);
+        followed_.at(state, has_accelerations_ ? &accelerated : nullptr);
     const std::vector<double> angles = turns_.at(state);
     std::vector<double> all;
     std::size_t next = 0;

@@ -26,8 +26,8 @@ struct AcceleratedState {
 };
 
 struct CoordinateValue {
-    double value = 0;   ///< rad or m
-    double rate = 0;    ///< its rate, per s
+    double value = 0;                                                 ///< rad or m
+    double rate = 0;                                                  ///< its rate, per s
     double acceleration = std::numeric_limits<double>::quiet_NaN();   ///< per s^2, where they were given
 };
 
@@ -100,17 +100,18 @@ class SensorReadings {
 public:
     SensorReadings(const Model& model, const Motion& motion);
 
-    /// Of all components of all sensors at t, one after the other, after snap_to_element_end(). Where a load
-    /// jumps, what is there on that side.
+    /// Of all components of all sensors at t, one after the other, after snap_to_element_end(); between
+    /// element ends in the nearest state that joints allow. Where a load jumps, what is there on that side.
     std::vector<double> at(double t, Side side = Side::right) const;
     /// The same in a state at an instant of the motion, as sample_exactly() has it.
-    std::vector<double> at(const State& state, Side side = Side::right) const;
+    std::vector<double> at(const State& given, Side side = Side::right) const;
 
 private:
     const Model& model_;
     const Motion& motion_;
     FollowedCoordinates followed_;   ///< of components that have a coordinate, in their order
-    std::shared_ptr<const Accelerations> accelerations_;   ///< null: no component is one
+    std::shared_ptr<const Accelerations> accelerations_;
+    bool has_accelerations_ = false;   ///< a component is one
     LoadTurns turns_;
 };
 
@@ -122,4 +123,4 @@ struct LostTurn {
 };
 LostTurn find_lost_turn(const Model& model, const Motion& motion);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reactions of joints at any instant, on both sides of it: of the acceleration level where elements end,
-// interpolated between (theory.md, "Element ends"); the least where joints are redundant.
+// Reactions of joints at any instant, on both sides of it: of the acceleration level (theory.md, "Element
+// ends", "Accelerations"), interpolated where that cannot be had; the least where joints are redundant.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "livens/diagnostics/accelerations.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/dynamics/instant/reactions.h"
@@ -156,35 +157,27 @@ double beside(const Motion& motion, double t, int end, Side side)
     return motion.mesh.ends[element] + 0.5 * motion.mesh.length(element);
 }
 
-/// In a state of the motion; reactions(left, right) where all joints act.
+/// What joints hold at an instant, all rows of the model.
+struct Held {
+    State state;   ///< where they hold it
+    std::vector<double> left, right;
+    bool is_acceleration_level = true;
+};
+
+/// reactions(state, left, right) where all joints act.
 template <class Reactions>
-std::vector<JointSample> joints_in(const Model& model, const Motion& motion, const State& state,
+std::vector<JointSample> joints_in(const Model& model, const Motion& motion, const Held& held,
                                    const Reactions& reactions)
 {
+    const State& state = held.state;
     const int end = element_end_at(motion.mesh, state.t);
-    // Ends have multipliers of order 2p from the equations of motion; inside, those of the nodes are
-    // interpolated, of order p.
-    const bool is_acceleration_level = end >= 0 && !motion.end_multipliers.empty();
-    if (!is_acceleration_level && (motion.multipliers.empty() || motion.n_elements() == 0)) return {};
-
-    std::vector<double> interpolated;
-    std::span<const double> left, right;
-    if (is_acceleration_level) {
-        const std::span<const double> all(motion.end_multipliers);
-        const std::size_t n = static_cast<std::size_t>(motion.n_rows);
-        left = all.subspan(2 * static_cast<std::size_t>(end) * n, n);
-        right = all.subspan((2 * static_cast<std::size_t>(end) + 1) * n, n);
-    } else {
-        interpolated = field_at(motion.multipliers, motion.mesh, state.t);
-        left = right = interpolated;
-    }
     std::vector<JointSample> samples;
     if (!model.has_events())
-        samples = reactions(left, right);
+        samples = reactions(state, held.left, held.right);
     else {
-        samples = reactions_beside(model, motion, state, left, beside(motion, state.t, end, Side::left));
+        samples = reactions_beside(model, motion, state, held.left, beside(motion, state.t, end, Side::left));
         const std::vector<JointSample> after =
-            reactions_beside(model, motion, state, right, beside(motion, state.t, end, Side::right));
+            reactions_beside(model, motion, state, held.right, beside(motion, state.t, end, Side::right));
         for (std::size_t j = 0; j < samples.size(); ++j) {
             samples[j].right = after[j].right;
             samples[j].is_unique = samples[j].is_unique && after[j].is_unique;
@@ -192,8 +185,8 @@ std::vector<JointSample> joints_in(const Model& model, const Motion& motion, con
             samples[j].is_bounded = samples[j].is_bounded && after[j].is_bounded;
         }
     }
-    if (end < 0) forget_unbounded(model, motion, state, samples);
-    for (JointSample& sample : samples) sample.is_acceleration_level = is_acceleration_level;
+    if (!held.is_acceleration_level && end < 0) forget_unbounded(model, motion, state, samples);
+    for (JointSample& sample : samples) sample.is_acceleration_level = held.is_acceleration_level;
     return samples;
 }
 
@@ -201,10 +194,7 @@ std::vector<JointSample> joints_in(const Model& model, const Motion& motion, con
 
 std::vector<JointSample> sample_joints(const Model& model, const Motion& motion, double t)
 {
-    const State state = sample_state(motion, t);
-    return joints_in(model, motion, state, [&](std::span<const double> left, std::span<const double> right) {
-        return reactions_of(model, state, left, right, kept_rows(model, motion));
-    });
+    return JointSampler(model, motion).at(sample_state(motion, t));
 }
 
 struct JointSampler::Parts {
@@ -212,6 +202,7 @@ struct JointSampler::Parts {
         : rows(model, false), independent(kept_rows(model, motion))
     {}
 
+    std::optional<Held> held_in(const Model& model, const Motion& motion, const State& state);
     Reaction reaction(const Model& model, int joint, std::span<const Matrix34> X,
                       std::span<const double> multipliers) const;
 
@@ -219,11 +210,41 @@ struct JointSampler::Parts {
     std::vector<int> independent;
     UniqueReactions least;   // at an element end
     int least_end = -1;
+    std::optional<Accelerations> accelerations;   // once an instant between ends is asked for
 };
 
 JointSampler::JointSampler(const Model& model, const Motion& motion)
     : model_(model), motion_(motion), parts_(std::make_shared<Parts>(model, motion))
 {}
+
+JointSampler::JointSampler(const Model& model, const Motion& motion, const Accelerations& accelerations)
+    : JointSampler(model, motion)
+{
+    parts_->accelerations.emplace(accelerations);
+}
+
+/// Ends have multipliers of order 2p from the equations of motion. Between them the same equations are solved
+/// in the state of the instant; where joints lose rank, and of motions that hold nothing of the kind at ends,
+/// the nodes' multipliers are interpolated. Nothing: there are none.
+std::optional<Held> JointSampler::Parts::held_in(const Model& model, const Motion& motion, const State& state)
+{
+    const int end = element_end_at(motion.mesh, state.t);
+    if (end >= 0 && !motion.end_multipliers.empty()) {
+        const std::size_t n = static_cast<std::size_t>(motion.n_rows);
+        const auto left = motion.end_multipliers.begin() + static_cast<std::ptrdiff_t>(2 * end * n),
+                   right = left + static_cast<std::ptrdiff_t>(n);
+        return Held{state, {left, right}, {right, right + static_cast<std::ptrdiff_t>(n)}};
+    }
+    if (motion.n_elements() == 0) return {};
+    if (end < 0 && !motion.end_multipliers.empty() && !motion.accelerations.empty()) {
+        if (!accelerations) accelerations.emplace(model, motion);
+        std::vector<double> found = accelerations->multipliers_at(state);
+        if (!found.empty()) return Held{accelerations->on_joints(state), found, found};
+    }
+    if (motion.multipliers.empty()) return {};
+    const std::vector<double> interpolated = field_at(motion.multipliers, motion.mesh, state.t);
+    return Held{state, interpolated, interpolated, false};
+}
 
 /// joint_reaction() by the tables.
 Reaction JointSampler::Parts::reaction(const Model& model, int joint, std::span<const Matrix34> X,
@@ -245,9 +266,12 @@ Reaction JointSampler::Parts::reaction(const Model& model, int joint, std::span<
     return joint_reaction(j, X[j.second], F);
 }
 
-std::vector<JointSample> JointSampler::at(const State& state) const
+std::vector<JointSample> JointSampler::at(const State& given) const
 {
-    const auto reactions = [&](std::span<const double> left, std::span<const double> right) {
+    const std::optional<Held> held = parts_->held_in(model_, motion_, given);
+    if (!held) return {};
+    const auto reactions = [&](const State& state, std::span<const double> left,
+                               std::span<const double> right) {
         if (model_.has_drives()) return reactions_of(model_, state, left, right, parts_->independent);
         BothSides both{bounded_joints(model_, left, right), numbers_of(left, right)};
         UniqueReactions own;
@@ -262,7 +286,7 @@ std::vector<JointSample> JointSampler::at(const State& state) const
             return parts_->reaction(model_, j, state.X, multipliers);
         });
     };
-    return joints_in(model_, motion_, state, reactions);
+    return joints_in(model_, motion_, *held, reactions);
 }
 
 const UniqueReactions* JointSampler::least_at(const State& state, int end) const

@@ -46,7 +46,19 @@ constexpr BodyQuantity body_quantities[] = {{"position", "m", 3},
                                             {"linear_momentum", "kg m/s", 3},
                                             {"angular_momentum", "kg m^2/s", 3}};
 
+/// What a body has at each of its points.
+bool is_of_points(std::string_view what)
+{
+    return what == "position" || what == "velocity" || what == "acceleration";
+}
+
 bool needs_accelerations(const NamedQuantity& q) { return q.what.ends_with("acceleration"); }
+
+/// Along the axes of a body.
+Vector3 in_axes(const Matrix34& X, const Vector3& v)
+{
+    return transpose(project_directors(directors(X))) * v;
+}
 
 /// The motion of a body's material points as those of the joint point.
 Vector3 point_velocity(const Matrix34& X, const Matrix34& V, const Vector3& place)
@@ -62,65 +74,19 @@ std::string component_of(const NamedQuantity& quantity, int i)
     return std::string(1, quantity.size == 4 ? "wxyz"[i] : "xyz"[i]);
 }
 
-namespace {
-
-/// Elements end there with other accelerations or reactions than they begin with.
-bool jumps_at(const Motion& motion, int end)
-{
-    const auto differ = [](const double* before, const double* after, std::size_t n) {
-        double largest = 0, jump = 0;
-        for (std::size_t i = 0; i < n; ++i) {
-            largest = std::max({largest, std::abs(before[i]), std::abs(after[i])});
-            jump = std::max(jump, std::abs(after[i] - before[i]));
-        }
-        return jump > 1e-9 * largest;
-    };
-    const std::size_t e = 2 * static_cast<std::size_t>(end), n = static_cast<std::size_t>(motion.n_bodies),
-                      n_rows = static_cast<std::size_t>(motion.n_rows);
-    const double *const A = motion.accelerations.data()->data(), *const L = motion.end_multipliers.data();
-    if (!motion.accelerations.empty() && differ(A + 12 * e * n, A + 12 * (e + 1) * n, 12 * n)) return true;
-    return !motion.end_multipliers.empty() && differ(L + e * n_rows, L + (e + 1) * n_rows, n_rows);
-}
-
-}   // namespace
-
-std::vector<SeenInstant> dense_instants(const Motion& motion)
-{
-    constexpr int over_all = 600;
-    const int n = motion.n_elements();
-    std::vector<SeenInstant> all{{motion.start()}};
-    const int parts = n > 0 ? std::max(motion.X.degree + 1, (over_all + n - 1) / n) : 1;
-    for (int e = 0; e < n; ++e) {
-        const double begin = motion.mesh.ends[static_cast<std::size_t>(e)], h = motion.mesh.length(e);
-        for (int i = 1; i < parts; ++i) all.push_back({begin + h * i / parts});
-        const double end = motion.mesh.ends[static_cast<std::size_t>(e) + 1];
-        if (e + 1 == n || jumps_at(motion, e + 1)) all.push_back({end, Side::left});
-        if (e + 1 < n) all.push_back({end});
-    }
-    return all;
-}
-
-std::vector<SeenInstant> end_instants(const Motion& motion)
-{
-    std::vector<SeenInstant> all;
-    for (const double t : motion.mesh.ends) all.push_back({t});
-    if (motion.n_elements() > 0) all.back().side = Side::left;
-    return all;
-}
-
 struct Quantities::Sources {
     Sources(const Model& model, const Motion& motion)
-        : coordinates(model, motion), joints(model, motion), turns(model, motion), sensors(model, motion),
-          accelerations(model, motion)
+        : accelerations(model, motion), coordinates(model, motion), joints(model, motion, accelerations),
+          turns(model, motion), sensors(model, motion)
     {
         for (const Joint& joint : model.joints()) efforts.push_back(drive_effort(joint));
     }
 
+    Accelerations accelerations;
     JointCoordinates coordinates;
-    JointSampler joints;
+    JointSampler joints;   // shares what those find
     LoadTurns turns;
     SensorReadings sensors;
-    Accelerations accelerations;
     std::vector<std::optional<DriveEffort>> efforts;   // of the joints
 };
 
@@ -132,6 +98,7 @@ Quantities::Quantities(const Model& model, const Motion& motion, const std::vect
     for (std::size_t b = 0; b < body_names.size(); ++b)
         for (const BodyQuantity& q : body_quantities)
             add(QuantityOf::body, static_cast<int>(b), body_names[b], q.what, q.unit, q.size);
+    add_points();
     const std::vector<JointCoordinates::Place>& places = sources_->coordinates.places();
     for (std::size_t i = 0; i < places.size(); ++i) {
         const NamedCoordinate& q = sources_->coordinates.coordinate(static_cast<int>(i));
@@ -146,18 +113,43 @@ Quantities::Quantities(const Model& model, const Motion& motion, const std::vect
     add_parts();
 }
 
+void Quantities::add_points()
+{
+    for (int p = 0; p < std::ssize(model_.points()); ++p)
+        for (const BodyQuantity& q : body_quantities) {
+            if (!is_of_points(q.what)) continue;
+            add(QuantityOf::point, p, model_.points()[p].name, q.what, q.unit, q.size);
+            all_.back().is_on_request = true;
+        }
+}
+
+/// In axes of the world, and of the bodies that have some.
+void Quantities::add_reactions(int j)
+{
+    const Joint& joint = model_.joints()[j];
+    add(QuantityOf::reaction, j, joint.name, "force", "N", 3);
+    add(QuantityOf::reaction, j, joint.name, "torque", "N m", 3);
+    for (const int body : {joint.first, joint.second}) {
+        if (body == world || model_.bodies()[body].is_point) continue;
+        for (const char* what : {"force", "torque"}) {
+            const std::string name = std::string(what) + "_in." + model_.body_name(body);
+            add(QuantityOf::reaction, j, joint.name, name, *what == 'f' ? "N" : "N m", 3);
+            all_.back().is_on_request = true;
+            all_.back().axes = body;
+        }
+    }
+}
+
 /// Of joints, drives, loads and sensors.
 void Quantities::add_parts()
 {
     for (int j = 0; has_reactions_ && j < std::ssize(model_.joints()); ++j) {
+        add_reactions(j);
         const Joint& joint = model_.joints()[j];
-        add(QuantityOf::reaction, j, joint.name, "force", "N", 3);
-        add(QuantityOf::reaction, j, joint.name, "torque", "N m", 3);
         if (joint.type != "drive") continue;
         if (const auto& effort = sources_->efforts[static_cast<std::size_t>(j)]) {
             const bool is_angle = effort->coordinate.is_angle();
-            add(QuantityOf::drive, j, joint.name, is_angle ? "drive_torque" : "drive_force",
-                is_angle ? "N m" : "N");
+            add(QuantityOf::drive, j, joint.name, "effort", is_angle ? "N m" : "N");
         }
         add(QuantityOf::drive, j, joint.name, "power", "W");
     }
@@ -182,17 +174,29 @@ void Quantities::add(QuantityOf of, int index, const std::string& part, const st
     n_numbers_ += size;
 }
 
-void Quantities::at(const State& state, Side side, std::span<const NamedQuantity> wanted,
+void Quantities::at(const State& given, Side side, std::span<const NamedQuantity> wanted,
                     std::span<double> numbers, std::span<const JointSample> joints) const
 {
     const auto any = [&](auto... kinds) {
         return std::ranges::any_of(wanted, [&](const NamedQuantity& q) { return ((q.of == kinds) || ...); });
     };
+    const Accelerations& equations = sources_->accelerations;
     AcceleratedState accelerated;
     const bool is_accelerated = std::ranges::any_of(
         wanted, [](const NamedQuantity& q) { return q.of != QuantityOf::sensor && needs_accelerations(q); });
-    if (is_accelerated) accelerated = sources_->accelerations.at(state, side);
+    if (is_accelerated) accelerated = equations.at(given, side);
+    if (any(QuantityOf::reaction, QuantityOf::drive) && joints.empty()) {
+        const std::vector<JointSample> found = sources_->joints.at(given);
+        put_joints(equations.on_joints(given), side, wanted, found, numbers);
+    } else if (!joints.empty()) {
+        put_joints(given, side, wanted, joints, numbers);
+    }
+    // Laws of loads may be steep in what the polynomials have a little off.
+    const bool is_forced =
+        is_accelerated || any(QuantityOf::reaction, QuantityOf::drive, QuantityOf::load, QuantityOf::sensor);
+    const State state = is_forced ? equations.on_joints(given) : given;
     if (any(QuantityOf::body)) put_bodies(state, accelerated, wanted, numbers);
+    if (any(QuantityOf::point)) put_points(state, accelerated, wanted, numbers);
     if (any(QuantityOf::coordinate)) {
         const std::vector<CoordinateValue> values =
             sources_->coordinates.at(state, is_accelerated ? &accelerated : nullptr);
@@ -204,10 +208,9 @@ void Quantities::at(const State& state, Side side, std::span<const NamedQuantity
                                                                                    : value.value;
         }
     }
-    if (any(QuantityOf::reaction, QuantityOf::drive)) put_joints(state, side, wanted, joints, numbers);
     if (any(QuantityOf::load, QuantityOf::model)) put_loads(state, side, wanted, numbers);
     if (!any(QuantityOf::sensor)) return;
-    const std::vector<double> read = sources_->sensors.at(state, side);
+    const std::vector<double> read = sources_->sensors.at(given, side);
     int first = n_numbers_ - static_cast<int>(read.size());   // sensors stand last
     for (const NamedQuantity& q : wanted)
         if (q.of == QuantityOf::sensor)
@@ -238,11 +241,29 @@ void Quantities::put_bodies(const State& state, const AcceleratedState& accelera
     }
 }
 
+void Quantities::put_points(const State& state, const AcceleratedState& accelerated,
+                            std::span<const NamedQuantity> wanted, std::span<double> numbers) const
+{
+    const std::vector<BodySample> samples = sample_bodies(model_, motion_, state);
+    for (const NamedQuantity& q : wanted) {
+        if (q.of != QuantityOf::point) continue;
+        const NamedPoint& at = model_.points()[q.index];
+        if (at.body == world) {
+            put(numbers, q, q.what == "position" ? at.position : Vector3{});
+            continue;
+        }
+        const BodySample& s = samples[static_cast<std::size_t>(at.body)];
+        const Vector3 arm = project_directors(directors(state.X[at.body])) * at.position;
+        if (q.what == "position") put(numbers, q, s.position + arm);
+        if (q.what == "velocity") put(numbers, q, s.velocity + cross(s.angular_velocity, arm));
+        if (q.what == "acceleration")
+            put(numbers, q, accelerated.A[static_cast<std::size_t>(at.body)] * point(at.position));
+    }
+}
+
 void Quantities::put_joints(const State& state, Side side, std::span<const NamedQuantity> wanted,
                             std::span<const JointSample> joints, std::span<double> numbers) const
 {
-    std::vector<JointSample> found;
-    if (joints.empty()) joints = found = sources_->joints.at(state);
     constexpr Vector3 none{no_number, no_number, no_number};
     for (const NamedQuantity& q : wanted) {
         if (q.of != QuantityOf::reaction && q.of != QuantityOf::drive) continue;
@@ -252,8 +273,10 @@ void Quantities::put_joints(const State& state, Side side, std::span<const Named
                            : side == Side::left ? joints[j].left
                                                 : joints[j].right;
         const Joint& joint = model_.joints()[q.index];
-        if (q.what == "force") put(numbers, q, r.force);
-        if (q.what == "torque") put(numbers, q, r.torque);
+        if (q.of == QuantityOf::reaction) {
+            const Vector3& v = q.what.starts_with("force") ? r.force : r.torque;
+            put(numbers, q, q.axes == world ? v : in_axes(state.X[q.axes], v));
+        }
         if (q.of != QuantityOf::drive) continue;
         numbers[static_cast<std::size_t>(q.first)] = q.what == "power"
                                                          ? joint_power(joint, state.X, state.V, r)

@@ -15,18 +15,21 @@
 namespace [[gnu::visibility("default")]] livens {
 
 /// Whose quantities: of the whole model (energies), of bodies, ...
-enum class QuantityOf { model, body, coordinate, reaction, drive, load, sensor };
+enum class QuantityOf { model, body, point, coordinate, reaction, drive, load, sensor };
 
 /// A number, a vector (x, y, z) or a quaternion (w, x, y, z) that a motion has at every instant.
 struct NamedQuantity {
     QuantityOf of;
-    int index = 0;              ///< of the body, joint, load or sensor
+    int index = 0;              ///< of the body, point, joint, load or sensor
     std::string part;           ///< its name; empty: the whole model
     std::string what;           ///< "force", "angle_rate"
     std::string unit;           ///< "m/s^2"
     int size = 1;               ///< how many numbers
     int first = 0;              ///< the place of its first one among those of all
     bool is_repeated = false;   ///< of a sensor that reads a load of its own name
+    /// Told where it is named, and no part of tables of everything: it says anew what others say.
+    bool is_on_request = false;
+    int axes = world;   ///< of a reaction: the body in whose axes it is
 
     std::string name() const { return part.empty() ? what : part + "." + what; }
 };
@@ -52,7 +55,8 @@ class Quantities {
 public:
     Quantities(const Model& model, const Motion& motion, const std::vector<std::string>& body_names);
 
-    /// In the order of the model: energies, bodies, coordinates of joints, reactions, drives, loads, sensors.
+    /// In the order of the model: energies, bodies, points, coordinates of joints, reactions, drives, loads,
+    /// sensors.
     const std::vector<NamedQuantity>& all() const { return all_; }
     /// Numbers of all quantities together.
     int n_numbers() const { return n_numbers_; }
@@ -60,9 +64,11 @@ public:
     bool has_reactions() const { return has_reactions_; }
 
     /// The numbers of `wanted` in a state at an instant of the motion, at their places among all; what else
-    /// is in `numbers` stays as it is. nan: what a point mass has not, and where joints lose rank. `joints`
-    /// are those of sample_exactly(), empty: the motion is asked.
-    void at(const State& state, Side side, std::span<const NamedQuantity> wanted, std::span<double> numbers,
+    /// is in `numbers` stays as it is. Between element ends, where forces are among them, all are those of
+    /// the nearest state that joints and drives allow, see Accelerations::on_joints(). nan: what a point mass
+    /// has not, and where joints lose rank. `joints` are those of sample_exactly(), empty: the motion is
+    /// asked.
+    void at(const State& given, Side side, std::span<const NamedQuantity> wanted, std::span<double> numbers,
             std::span<const JointSample> joints = {}) const;
 
 private:
@@ -70,8 +76,12 @@ private:
 
     void add(QuantityOf of, int index, const std::string& part, const std::string& what,
              const std::string& unit, int size = 1);
+    void add_points();
+    void add_reactions(int joint);
     void add_parts();
     void put_bodies(const State& state, const AcceleratedState& accelerated,
+                    std::span<const NamedQuantity> wanted, std::span<double> numbers) const;
+    void put_points(const State& state, const AcceleratedState& accelerated,
                     std::span<const NamedQuantity> wanted, std::span<double> numbers) const;
     void put_joints(const State& state, Side side, std::span<const NamedQuantity> wanted,
                     std::span<const JointSample> joints, std::span<double> numbers) const;

@@ -35,7 +35,7 @@ struct JointSample {
     Reaction left;
     Reaction right;
     bool is_acceleration_level =
-        false;               ///< from the end multipliers; else interpolated between the elements' nodes
+        false;               ///< by the equations of motion at the instant; else between nodes' multipliers
     bool is_unique = true;   ///< false: other joints of a closed loop could carry part of it; then it is the
                              ///< least, see least_reactions()
     SharedComponents shared{};   ///< then: in which components
@@ -68,10 +68,14 @@ std::vector<double> node_times(const Field& field, const TimeMesh& mesh);
 /// All joints at t, after snap_to_element_end(). Without any multipliers in the motion the list is empty.
 std::vector<JointSample> sample_joints(const Model& model, const Motion& motion, double t);
 
-/// sample_joints() at many instants: what follows from the model alone is made once.
+class Accelerations;
+
+/// sample_joints() at many instants: what follows from the model alone is made once. Copies share it.
 class JointSampler {
 public:
     JointSampler(const Model& model, const Motion& motion);
+    /// Shares what these have found.
+    JointSampler(const Model& model, const Motion& motion, const Accelerations& accelerations);
 
     /// In a state that sample_state() gave.
     std::vector<JointSample> at(const State& state) const;

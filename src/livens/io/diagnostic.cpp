@@ -58,20 +58,6 @@ int width(std::string_view text)
         text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
-std::string_view find_line(std::string_view source, int line)
-{
-    // A mark of the byte order counts as no column, as in editors.
-    if (source.substr(0, 3) == "\xef\xbb\xbf") source.remove_prefix(3);
-    for (int i = 1; i < line; ++i) {
-        const std::size_t end = source.find('\n');
-        if (end == std::string_view::npos) return {};
-        source.remove_prefix(end + 1);
-    }
-    source = source.substr(0, source.find('\n'));
-    if (!source.empty() && source.back() == '\r') source.remove_suffix(1);
-    return source;
-}
-
 /// At most `widest` characters of a line around the columns in question, and the underline below.
 struct Excerpt {
     std::string text;
@@ -145,7 +131,9 @@ std::string render_human(const Diagnostic& d, std::string_view source, const Col
         const int gutter = static_cast<int>(number.size()) + 3;
         const int room =
             columns > 0 ? std::clamp(columns - gutter - marks, narrowest_line, widest_line) : widest_line;
-        const Excerpt e = excerpt(find_line(source, d.line), d.column, d.length, room);
+        const Excerpt e =
+            excerpt(d.source_line.empty() ? find_line(source, d.line) : std::string_view(d.source_line),
+                    d.column, d.length, room);
         out += bar + "\n" + c.frame + number + " |" + c.plain + (e.text.empty() ? "" : " ") + e.text + "\n";
         out +=
             bar + " " + (d.severity == Severity::error ? c.error : c.warning) + e.underline + c.plain + "\n";

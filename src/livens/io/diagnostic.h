@@ -18,9 +18,10 @@ struct Diagnostic {
     std::string file;
     int line = 0;
     int column = 0;
-    int length = 1;     ///< characters to underline
-    std::string note;   ///< the law that is broken; may be empty
-    std::string help;   ///< the likely fix; may be empty
+    int length = 1;              ///< characters to underline
+    std::string note;            ///< the law that is broken; may be empty
+    std::string help;            ///< the likely fix; may be empty
+    std::string source_line{};   ///< of a file that another one includes: the line itself
 };
 
 enum class DiagnosticFormat { human, json, gnu };
@@ -35,4 +36,4 @@ std::string render(const std::vector<Diagnostic>& diagnostics, std::string_view 
 std::string_view explain(std::string_view code);
 std::vector<std::string_view> diagnostic_codes();
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

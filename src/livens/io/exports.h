@@ -62,6 +62,8 @@ struct ExportFormat {
     /// (`picture`) and Stopped.
     void (*write)(const std::filesystem::path& file, const ExportInput& input);
     bool is_drawn = false;   ///< by a browser: it takes its time, and asks Patience
+    /// What the file will show wrongly, to be told as a warning; empty: nothing. Null: never anything.
+    std::string (*doubt)(const ExportInput& input) = nullptr;
 };
 
 /// docs/results.md has the same table.

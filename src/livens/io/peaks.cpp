@@ -13,25 +13,35 @@ namespace livens {
 
 namespace {
 
+/// The longest name of a part with which a name begins; empty: there is none.
+std::string part_of(const Quantities& quantities, const std::string& name)
+{
+    std::string part;
+    for (const NamedQuantity& q : quantities.all())
+        if (q.part.size() > part.size() && (name == q.part || name.starts_with(q.part + "."))) part = q.part;
+    return part;
+}
+
 [[noreturn]] void refuse_name(const Quantities& quantities, const std::string& name)
 {
-    std::vector<std::string> known;
-    std::vector<std::string_view> parts, of_part;
+    // What the part has, where the part is meant beyond doubt.
+    const std::string part = part_of(quantities, name);
+    std::vector<std::string> known, quoted;
+    std::vector<std::string_view> parts;
     for (const NamedQuantity& q : quantities.all()) {
+        if (std::ranges::find(parts, q.part) == parts.end() && !q.part.empty()) parts.push_back(q.part);
+        if (!part.empty() && q.part != part) continue;
         known.push_back(q.name());
+        quoted.push_back("'" + q.name() + "'");
         for (int i = 0; q.size > 1 && i < q.size; ++i) known.push_back(q.name() + "." + component_of(q, i));
-        if (!q.part.empty() && std::ranges::find(parts, q.part) == parts.end()) parts.push_back(q.part);
-        if (!q.part.empty() && name == q.part) of_part.push_back(q.what);
     }
-    std::string help = "there are ";
-    if (of_part.empty()) {
-        const std::vector<std::string_view> all(known.begin(), known.end());
-        help = closest(name, all).empty()
-                   ? "write a part and what of it, as in \"pivot.force\"; parts " + suggest("", parts)
-                   : suggest(name, all);
-    } else {
-        for (std::size_t i = 0; i < of_part.size(); ++i)
-            help += (i > 0 ? ", '" : "'") + name + "." + std::string(of_part[i]) + "'";
+    const std::vector<std::string_view> all(known.begin(), known.end());
+    std::string help = suggest(name, all);
+    if (!part.empty() && (name == part || closest(name, all).empty())) {
+        help = "there are ";
+        for (std::size_t i = 0; i < quoted.size(); ++i) help += (i > 0 ? ", " : "") + quoted[i];
+    } else if (closest(name, all).empty()) {
+        help = "write a part and what of it, as in \"pivot.force\"; parts " + suggest("", parts);
     }
     throw InputError(
         {"quantity-unknown", "", "the motion has no number of this name", "'" + name + "'", "", "", help});
@@ -42,12 +52,15 @@ namespace {
 QuantitySeries find_series(const Quantities& quantities, const std::string& name)
 {
     std::vector<QuantitySeries> found;
-    for (const NamedQuantity& q : quantities.all()) {
-        if (q.is_repeated) continue;
-        if (name == q.name()) found.push_back({q, -1});
-        for (int i = 0; q.size > 1 && i < q.size; ++i)
-            if (name == q.name() + "." + component_of(q, i)) found.push_back({q, i});
-    }
+    // A point may have the name of a body, which is meant then.
+    for (const bool is_on_request : {false, true})
+        for (const NamedQuantity& q : quantities.all()) {
+            if (q.is_repeated || q.is_on_request != is_on_request || (is_on_request && !found.empty()))
+                continue;
+            if (name == q.name()) found.push_back({q, -1});
+            for (int i = 0; q.size > 1 && i < q.size; ++i)
+                if (name == q.name() + "." + component_of(q, i)) found.push_back({q, i});
+        }
     if (found.empty()) refuse_name(quantities, name);
     if (found.size() > 1)
         throw InputError({"quantity-unknown", "", "several parts have a number of this name",
@@ -65,7 +78,9 @@ std::vector<QuantitySeries> usual_series(const Quantities& quantities)
 {
     std::vector<QuantitySeries> all;
     for (const NamedQuantity& q : quantities.all())
-        if (q.of != QuantityOf::body && q.of != QuantityOf::model && !q.is_repeated) all.push_back({q});
+        if (q.of != QuantityOf::body && q.of != QuantityOf::model && !q.is_repeated && !q.is_on_request &&
+            q.what != "limit_stiffness")
+            all.push_back({q});
     for (const NamedQuantity& q : quantities.all())
         if (q.of == QuantityOf::model) all.push_back({q});
     return all;

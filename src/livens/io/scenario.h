@@ -48,11 +48,11 @@ struct ShapePart {
     Vector3 center{};   ///< of mass, in body coordinates
 };
 
-/// Where the meshes of a scenario are.
+/// Where the meshes of a scenario are, and the files that it includes.
 struct MeshSource {
-    /// Paths of meshes begin there and do not leave it. None: meshes cannot be read.
+    /// Their paths begin there and do not leave it. None: they cannot be read.
     std::optional<std::filesystem::path> folder = {};
-    /// What Scenario::meshes held when the run was solved: meshes that stand in it are not read.
+    /// What Scenario::meshes held when the run was solved: what stands in it is not read.
     std::string kept = {};
 };
 
@@ -76,8 +76,9 @@ struct Scenario : OutputTimes {
     SolveOptions options;    ///< tolerance, max_iterations, initial, condition
     std::shared_ptr<Prepared> prepared;   ///< what reading has found of the model, for Problem
     std::string resolved;                 ///< all options after defaults, as one JSON object
-    std::string meshes;   ///< what its meshes come to, so that a run needs no file beside its own
-    std::vector<std::filesystem::path> mesh_files;   ///< that were read for it
+    /// What its meshes come to, and the texts that it includes, so that a run needs no file beside its own.
+    std::string meshes;
+    std::vector<std::filesystem::path> mesh_files;   ///< that were read for it, included ones, too
 };
 
 /// Values that parameters have instead of those of the file: names, each with a number or an expression.

@@ -3,9 +3,12 @@
 // solution alone; the estimate is timed apart.
 #include "livens/io/solve_scenario.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
+#include "livens/base/text.h"
+#include "livens/diagnostics/extremes.h"
 #include "livens/dynamics/start/prepared.h"
 
 namespace livens {
@@ -18,12 +21,36 @@ SolvedScenario solve_scenario(const Scenario& scenario, SolveOptions options,
     const auto begin = std::chrono::steady_clock::now();
     SolvedScenario solved{solve(scenario.model, problem, scenario.time, scenario.method, options),
                           std::move(problem)};
-    solved.solve_seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() -
-        solved.solution.estimate_seconds;
+    solved.solve_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() -
+                           solved.solution.estimate_seconds;
     estimate(scenario.model, solved.problem, scenario.method, options, solved.solution);
     return solved;
 }
+
+namespace {
+
+/// How far joints were beyond their limits: a note for each that was there.
+void tell_limits(const Scenario& scenario, Run& run)
+{
+    const std::vector<Load>& loads = scenario.model.loads();
+    const Quantities quantities(scenario.model, run.motion, run.body_names);
+    std::vector<QuantitySeries> series;
+    for (const NamedQuantity& q : quantities.all())
+        if (q.of == QuantityOf::load && q.what == "penetration") series.push_back({q});
+    if (series.empty() || run.motion.n_elements() == 0) return;
+    const std::vector<Extremes> found = find_extremes(quantities, run.motion, series, {});
+    for (std::size_t i = 0; i < series.size(); ++i) {
+        const Load& load = loads[static_cast<std::size_t>(series[i].quantity.index)];
+        const Extreme& most = found[i].largest;
+        if (!(most.value > 0)) continue;
+        const auto stiffness = std::ranges::find(load.readings, "limit_stiffness", &LoadReading::name);
+        run.notes.push_back("'" + load.name + "' was beyond its limits by " + to_text(most.value, 4) + " " +
+                            found[i].unit + " at most, at " + to_text(most.t, 6) + " s; its springs have " +
+                            to_text(stiffness->value(LoadArguments()), 4) + " " + stiffness->unit);
+    }
+}
+
+}   // namespace
 
 Run judged_run(const Scenario& scenario, SolvedScenario&& solved, const std::function<bool()>& goes_on)
 {
@@ -37,6 +64,7 @@ Run judged_run(const Scenario& scenario, SolvedScenario&& solved, const std::fun
     run.resolved = scenario.resolved;
     // Without output times the element ends are the samples, where a motion has its best states.
     run.output = scenario.output.empty() ? run.motion.mesh.ends : scenario.output;
+    tell_limits(scenario, run);
     return run;
 }
 

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "livens/base/error.h"
+#include "livens/multibody/nearest_inertia.h"
 #include "livens/multibody/wording.h"
 #include "livens/solvers/factors.h"
 #include "livens/solvers/spectral.h"
@@ -46,12 +47,20 @@ Matrix4 scaled_both_ways(const Matrix4& m, const Vector4& s)
     return scaled;
 }
 
-void check_principal_moments(const Matrix3& inertia, const std::string& path)
+/// As scenarios spell it: three moments, or the rows of the matrix.
+std::string inertia_in_words(const Matrix3& m)
+{
+    const bool is_diagonal = m(0, 1) == 0 && m(0, 2) == 0 && m(1, 2) == 0;
+    if (is_diagonal) return to_text(Vector3{m(0, 0), m(1, 1), m(2, 2)});
+    return "[" + to_text(m.column(0)) + ", " + to_text(m.column(1)) + ", " + to_text(m.column(2)) + "]";
+}
+
+void check_principal_moments(const Matrix3& inertia, double arms, const std::string& path)
 {
     const Vector3 j = symmetric_values(inertia);   // ascending
     // Inequality: J1 + J2 >= J3 - 1e-12 of the largest moment. Flat bodies meet it with equality, so rounding
-    // has to pass.
-    const double slack = relative_slack * std::max(std::abs(j[0]), std::abs(j[2]));
+    // has to pass; that of moments which were taken from those about the reference point is of M |c|^2.
+    const double slack = relative_slack * std::max({std::abs(j[0]), std::abs(j[2]), arms});
     const std::string moments = to_text(j);
     if (j[0] < -slack)
         throw InputError({"inertia-negative", path, "a principal moment of inertia is negative", moments,
@@ -63,7 +72,9 @@ void check_principal_moments(const Matrix3& inertia, const std::string& path)
             missing < rounded * j[2]
                 ? "of a flat body that was rounded: write the sum of the other two for the largest, " +
                       to_text(sum, 12) + ", or all of them with more digits"
-                : "the inertia is taken about the centre of mass, in body axes";
+                : "the inertia is taken about the centre of mass, in body axes; if it is, the nearest that a "
+                  "body can have is " +
+                      inertia_in_words(nearest_inertia(inertia));
         throw InputError({"inertia-triangle", path,
                           "the largest principal moment exceeds the sum of the other two by " +
                               to_text(missing, 3) + " (" + to_text(100 * missing / j[2], 2) + " percent)",
@@ -157,7 +168,8 @@ void check_mass_properties(const MassProperties& properties, const std::string& 
                 throw InputError({"inertia-not-symmetric", path + ".inertia", "the inertia must be symmetric",
                                   to_text(J(i, j)) + " and " + to_text(J(j, i)), "equal entries",
                                   "J_ij = -sum of m x_i x_j for i != j, the same both ways", ""});
-    check_principal_moments(J, path + ".inertia");
+    const Vector3& c = properties.center_of_mass;
+    check_principal_moments(J, properties.mass * dot(c, c), path + ".inertia");
 }
 
 MassProperties box(double density, const Vector3& edges)

@@ -31,8 +31,8 @@ bool is_singular(const Matrix4& mass_matrix, bool is_point);
 Matrix4 inverse_mass(const Matrix4& mass_matrix, bool is_point);
 
 /// Refuses what no body can have: mass not positive, inertia not symmetric, a negative principal moment,
-/// principal moments that break the triangle inequality (all by 1e-12 of the largest). `path` names the body
-/// in the error.
+/// principal moments that break the triangle inequality (all by 1e-12 of the largest, or of M |c|^2, which
+/// rounds those that were moved to the centre). `path` names the body in the error.
 void check_mass_properties(const MassProperties& properties, const std::string& path);
 
 /// Bodies of constant density, centred at the body's origin; kg/m^3, m. The axis of revolution is d3.
@@ -48,4 +48,4 @@ MassProperties cone(double density, double radius, double height);   ///< centro
 MassProperties with_mass(MassProperties properties, double mass);
 MassProperties with_center(MassProperties properties, const Vector3& center_of_mass);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -307,12 +307,31 @@ int Model::add_sensor(Sensor sensor)
     return static_cast<int>(sensors_.size()) - 1;
 }
 
+int Model::add_point(NamedPoint point)
+{
+    check_name(points_, point.name, "point");
+    const std::string path = "point[" + point.name + "]";
+    check_body_index(point.body, n_bodies(), path);
+    require_finite(point.position, path + ".position", "the place of a point");
+    if (find_by_name(bodies_, point.name) >= 0)
+        throw InputError({"name-duplicate", path, "a body has this name", point.name, "",
+                          "the name of a point stands for its body, too", "rename one of them"});
+    if (point.body != world && bodies_[point.body].is_point && point.position != Vector3{})
+        refuse("point-mass", path + ".position", "a point mass has no other point than its own",
+               "leave the position out");
+    points_.push_back(std::move(point));
+    changed();
+    return static_cast<int>(points_.size()) - 1;
+}
+
 int Model::find_body(const std::string& name) const
 {
     return name == "world" ? world : find_by_name(bodies_, name);
 }
 
 int Model::find_joint(const std::string& name) const { return find_by_name(joints_, name); }
+
+int Model::find_point(const std::string& name) const { return find_by_name(points_, name); }
 
 State Model::start() const
 {
@@ -367,25 +386,6 @@ Model frozen(const Model& model, Instant at)
             for (ConstraintRow& row : *rows) row = frozen(row, at);
     now.changed();
     return now;
-}
-
-ActingModel acting_at(const Model& model, double t)
-{
-    ActingModel acting{Model(model.gravity()), {}, {}};
-    for (const Body& body : model.bodies()) acting.model.add_body(body);
-    for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
-        Joint joint = model.joints()[j];
-        if (!joint.acts_at(t)) continue;
-        for (int k = 0; k < static_cast<int>(joint.rows.size()); ++k)
-            acting.rows.push_back(model.first_row(j) + k);
-        joint.from = -std::numeric_limits<double>::infinity();
-        joint.until = std::numeric_limits<double>::infinity();
-        acting.joints.push_back(j);
-        acting.model.add_joint(std::move(joint));
-    }
-    for (const Load& load : model.loads()) acting.model.add_load(load);
-    for (const Sensor& sensor : model.sensors()) acting.model.add_sensor(sensor);
-    return acting;
 }
 
 Matrix34 weight(const Body& body, const Vector3& gravity) { return outer(gravity, body.mass.column(0)); }

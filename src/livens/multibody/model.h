@@ -10,6 +10,7 @@
 
 #include "livens/base/linear.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/displacement.h"
 #include "livens/multibody/joints.h"
 #include "livens/multibody/loads.h"
 #include "livens/multibody/sensors.h"
@@ -22,6 +23,31 @@ struct State {
     std::vector<Matrix34> X;
     std::vector<Matrix34> V;
     std::vector<double> angles{};   ///< of loads, see Turns; empty: no turns since the bodies were stated
+};
+
+/// A place of a body, or of the world, by its name.
+struct NamedPoint {
+    std::string name;
+    int body = world;
+    Vector3 position{};   ///< m, in coordinates of the body
+};
+
+/// Indices of the first body, joint, .. of another model in the one to which it was added; the others follow
+/// in their order.
+struct AddedParts {
+    int body = 0, joint = 0, load = 0, sensor = 0, point = 0;
+};
+
+/// Model::length(), 0 where nobody has asked: threads that do so at once find the same.
+struct KnownLength {
+    KnownLength() = default;
+    KnownLength(const KnownLength& other) : value(other.value.load(std::memory_order_relaxed)) {}
+    KnownLength& operator=(const KnownLength& other)
+    {
+        value.store(other.value.load(std::memory_order_relaxed), std::memory_order_relaxed);
+        return *this;
+    }
+    mutable std::atomic<double> value{0};
 };
 
 /// A mechanism is built by the add_ functions and constant from then on; all others take it const. Functions
@@ -38,12 +64,23 @@ public:
     int add_joint(Joint joint);
     int add_load(Load load);
     int add_sensor(Sensor sensor);
+    /// Also throws for the name of a body, and for a place of a point mass other than its own.
+    int add_point(NamedPoint point);
 
     const Vector3& gravity() const { return gravity_; }   ///< m/s^2
     const std::vector<Body>& bodies() const { return bodies_; }
     const std::vector<Joint>& joints() const { return joints_; }
     const std::vector<Load>& loads() const { return loads_; }
     const std::vector<Sensor>& sensors() const { return sensors_; }
+    const std::vector<NamedPoint>& points() const { return points_; }
+
+    /// Brings in all of another model, displaced, with a prefix before its names. What it says of the world's
+    /// axes and places turns and moves along: points and axes there, forces in world axes, paths of drives,
+    /// and the axes of its sensors and of what loads tell of themselves, so that laws that read them stay
+    /// what they were. Gravity is that of this model and does not turn. Throws InputError, and nothing is
+    /// added: `name-duplicate`, naming the part; `gravity-differs` if it has another gravity that is not
+    /// zero; `directors-not-orthonormal` and the like of the rotation.
+    AddedParts add(const Model& other, const std::string& prefix, const Displacement& by = {});
 
     int n_bodies() const { return static_cast<int>(bodies_.size()); }
     int n_rows() const { return static_cast<int>(rows_.size()); }   ///< of all joints, in their order
@@ -61,6 +98,7 @@ public:
     /// Index by name; -2 if there is none. `find_body("world")` is the world.
     int find_body(const std::string& name) const;
     int find_joint(const std::string& name) const;
+    int find_point(const std::string& name) const;
     std::string body_name(int body) const { return body == world ? "world" : bodies_[body].name; }
 
     /// X and V of all bodies as they were given.
@@ -91,29 +129,18 @@ private:
         int joint;
         int row;
     };
-    /// length(), 0 where nobody has asked: threads that do so at once find the same.
-    struct Length {
-        Length() = default;
-        Length(const Length& other) : value(other.value.load(std::memory_order_relaxed)) {}
-        Length& operator=(const Length& other)
-        {
-            value.store(other.value.load(std::memory_order_relaxed), std::memory_order_relaxed);
-            return *this;
-        }
-        mutable std::atomic<double> value{0};
-    };
-
     Vector3 gravity_;
     std::vector<Body> bodies_;
     std::vector<Joint> joints_;
     std::vector<Load> loads_;
     std::vector<Sensor> sensors_;
+    std::vector<NamedPoint> points_;
     std::vector<RowPlace> rows_;
     std::vector<int> first_rows_;
     bool has_drives_ = false;
     bool has_events_ = false, has_pieces_ = false;
     std::uint64_t version_ = 0;
-    Length length_;
+    KnownLength length_;
 
     void changed();
     friend Model frozen(const Model& model, Instant at);

@@ -163,6 +163,29 @@ TEST(StartCoordinates, MoveFreeBodiesByTheLeast)
     EXPECT_LT(norm(spin), 1e-13);
 }
 
+/// A base that is stated, at rest or not, stays as it is, and the rest follows; if not all that is stated
+/// fits, all of it moves by the least, and is told.
+TEST(StartCoordinates, KeepVelocitiesThatAreStated)
+{
+    Linkage pair(3, {1, 0, 0.2, 1});
+    const int base = pair.add_link({0, 0, 0}), leg = pair.add_link({1, 0, 0});
+    pair.hinge(base, leg, {0.5, 0, 0}, {0, 0, 1});
+    const std::vector<StartCoordinate> wanted{{0, 0, {}, 4.0}};
+    const MovedStart moved = move_start(pair.model, wanted, StartPolicy::check, 0, {{base}});
+    EXPECT_TRUE(moved.changed.empty());
+    EXPECT_LT(norm(moved.model.bodies()[base].V), 1e-15);
+    const Vector3 w = angular_velocity(moved.model.bodies()[leg].X, moved.model.bodies()[leg].V);
+    EXPECT_LT(norm(w - Vector3{0, 0, 4}), 1e-13);
+    // Negative control: nobody stated it.
+    EXPECT_GT(norm(move_start(pair.model, wanted, StartPolicy::check).model.bodies()[base].V), 0.1);
+    // Its place alone: it turns so that it has no spin about its reference point.
+    const MovedStart turned = move_start(pair.model, wanted, StartPolicy::check, 0, {{base, true, false}});
+    EXPECT_LT(norm(turned.model.bodies()[base].V.column(0)), 1e-14);
+    EXPECT_GT(norm(turned.model.bodies()[base].V), 0.1);
+    const MovedStart both = move_start(pair.model, wanted, StartPolicy::check, 0, {{base}, {leg}});
+    EXPECT_EQ(both.changed.size(), 2u) << "both at rest, and a hinge that turns: neither can stay";
+}
+
 TEST(StartCoordinates, RefuseWhatCannotBeStated)
 {
     const FourBar four;

@@ -2,13 +2,46 @@
 // Exports as far as a run need not be solved for them; tests/system/export_test.py has the rest.
 #include "livens/io/exports.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "livens/io/exports/formats.h"
+#include "livens/spacetime/solve.h"
 #include "unit/io/sample_run.h"
 
 namespace livens {
 namespace {
+
+/// A wheel of a bolt, 2 turns a second for a minute.
+TEST(Videos, SayWhereBodiesTurnBackBetweenFrames)
+{
+    const Scenario scenario =
+        parse_scenario(
+            "format = 1\n[[body]]\nname = \"bolt\"\nshape = { sphere = 0.1 }\nmass = 1\n"
+            "position = [1, 0, 0]\n[[joint]]\nname = \"hub\"\ntype = \"revolute\"\n"
+            "between = [\"world\", \"bolt\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\nrate = \"120 rpm\"\n"
+            "[time]\nend = 60\nelements = 600\n[method]\ndegree = 4\nestimate = \"none\"\n",
+            "wheel.toml")
+            .scenario.value();
+    const RunFile run =
+        make_run(scenario.model, solve(scenario.model, {scenario.conditions}, scenario.time, scenario.method),
+                 scenario.method);
+    ExportInput input{"", scenario, run};
+    const auto doubt = [&](const char* word) {
+        const auto of = std::ranges::find(export_formats(), std::string_view(word), &ExportFormat::word);
+        return of->doubt == nullptr ? "" : of->doubt(input);
+    };
+    EXPECT_NE(doubt("webm").find("0.25 s of the motion apart"), std::string::npos) << doubt("webm");
+    EXPECT_NE(doubt("gif"), "");
+    EXPECT_EQ(doubt("png") + doubt("csv"), "");
+    input.picture.duration = 60;   // fifteen frames a turn
+    EXPECT_EQ(doubt("webm") + doubt("gif"), "");
+    input.picture.duration = 0;
+    input.picture.to = 4;
+    EXPECT_EQ(doubt("webm") + doubt("gif"), "");
+    input.picture.rate = 2;   // each frame is a whole turn
+    EXPECT_NE(doubt("gif"), "");
+}
 
 /// What a command prints.
 std::string said_by(const std::string& command)

@@ -251,7 +251,8 @@ std::vector<test::Case> cases_along_joints()
 std::vector<test::Case> test::cases_of_mechanisms()
 {
     std::vector<Case> all = cases_of_joints();
-    for (const Case& more : cases_along_joints()) all.push_back(more);
+    for (const std::vector<Case>& more : {cases_along_joints(), cases_of_joint_loads()})
+        all.insert(all.end(), more.begin(), more.end());
     return all;
 }
 

@@ -101,10 +101,15 @@ TEST(Mistakes, OfTypesAreThoseOfTheTypeThatIsMeant)
 
 TEST(Mistakes, OfKeysAreAnsweredWithTheKeyOrTheTable)
 {
-    for (const char* key : {"limits", "range", "lower", "stops"})
-        expect_answer({axis, axis + "\n" + key + " = 1", "inputs = { q = \"shaft.angle\" }"});
-    for (const char* key : {"damping", "stiffness", "k"})
-        expect_answer({axis, axis + "\n" + key + " = 1", "type = \"spring\", joint = \"shaft\""});
+    for (const char* key : {"range", "lower", "stops"})
+        expect_answer({axis, axis + "\n" + key + " = 1", "limits = [\"-90 deg\", \"90 deg\"]"});
+    for (const char* key : {"d", "viscous_damping"})
+        expect_answer({axis, axis + "\n" + key + " = 1", "livens calls it 'damping'"});
+    expect_answer({axis, axis + "\nk = 1", "livens calls it 'stiffness'"});
+    expect_answer({axis, axis + "\narmature = 1", "\"rack_and_pinion\" of radius 1"});
+    for (const char* key : {"damping", "stiffness", "viscous_damping"})
+        expect_answer({"type = \"revolute\"", "type = \"cylindrical\"\n" + std::string(key) + " = 1",
+                       "angle = { damping = 0.1 }"});
     for (const char* key : {"motor", "actuator", "speed", "rpm"})
         expect_answer(
             {axis, axis + "\n" + key + " = 1", "[[drive]] with type = \"joint\", joint = \"shaft\""});

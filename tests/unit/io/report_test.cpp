@@ -109,6 +109,61 @@ TEST_F(Report, LossesAreStatedAndGrow)
     EXPECT_GT(loss(1000, "orientation"), loss(3000, "orientation"));
 }
 
+/// Series have all instants that elements have; where they cannot, what that loses is told.
+TEST_F(Report, SeriesSayWhatTheyLose)
+{
+    const auto loss = [&](double most_bytes) { return std::stod(found(page(most_bytes), "loss")); };
+    EXPECT_EQ(loss(8e6), 0);
+    const double some = loss(4e4), much = loss(1000);
+    EXPECT_GT(some, 1e-8);
+    EXPECT_LT(some, 0.1);
+    EXPECT_GT(much, some);
+}
+
+/// Where a law is steep, elements are divided for the series, as long as there is room; smooth ones are not.
+TEST_F(Report, SeriesFollowSteepLaws)
+{
+    const auto n_ends = [](const std::string& page) {
+        const std::string key = "\"curve_end\": [\"f8\", ";
+        return std::stoul(page.substr(page.find(key) + key.size()));
+    };
+    EXPECT_EQ(n_ends(page(8e6)), run_.motion.mesh.ends.size());
+    const Scenario ram = parse_scenario(R"toml(format = 1
+[[body]]
+name = "ram"
+mass = 12
+inertia = [1, 1, 1]
+[[joint]]
+name = "slide"
+type = "prismatic"
+between = ["world", "ram"]
+at = [0, 0, 0]
+axis = [1, 0, 0]
+[[drive]]
+type = "joint"
+joint = "slide"
+harmonic = { amplitude = 0.2, frequency = 1 }
+[[load]]
+type = "actuator"
+joint = "slide"
+expression = "-250*(1 + tanh(slide.displacement_rate/0.02))"
+[time]
+end = 1
+elements = 6
+)toml",
+                                        "ram.toml")
+                             .scenario.value();
+    const Solution solution = solve(ram.model, {ram.conditions}, ram.time, ram.method, ram.options);
+    const RunFile run = make_run(ram.model, solution, ram.method);
+    const auto page_of = [&](double most_bytes) {
+        return report_page(ReportInput{ram, run, "ram"}, nullptr, {most_bytes});
+    };
+    EXPECT_EQ(found(page_of(8e6), "loss"), "0");
+    EXPECT_GT(n_ends(page_of(8e6)), 2 * run.motion.mesh.ends.size());
+    EXPECT_EQ(n_ends(page_of(100)), run.motion.mesh.ends.size()) << "no room";
+    EXPECT_GT(std::stod(found(page_of(100), "loss")), 0.01) << "and told";
+}
+
 TEST_F(Report, OneOrTwoRuns)
 {
     const ReportInput input{scenario_, run_, "pendulum"};

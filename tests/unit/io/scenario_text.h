@@ -23,6 +23,7 @@ struct Case {
 
 /// Of the family mixed and of conditions at the end; mixed_scenario_test.cpp.
 std::vector<Case> cases_of_mixed();
+std::vector<Case> cases_of_joint_loads();
 std::vector<Case> cases_of_mechanisms();
 std::vector<Case> cases_of_laws();
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 
+#include "livens/base/error.h"
 #include "unit/multibody/random_states.h"
 
 namespace livens {
@@ -300,6 +301,64 @@ TEST(Attraction, PullsAtTheDirectorsByItsGradientAlone)
         const Vector3 couple = directors(start[0]) * cross(y, {100 * y[0], 1250 * y[1], 1300 * y[2]});
         EXPECT_LT(norm(moment(start[0], F) - 3 * mu / (r * r * r) * couple), 1e-15);
         for (int k = 1; k < 4; ++k) EXPECT_LT(norm(F.column(k)), 1e4 * mu / (r * r * r));
+    }
+}
+
+/// Of any turn, about several axes and by more than half a one.
+TEST(RotationalDamper, TurnsAgainstTheRelativeAngularVelocity)
+{
+    Random random(8);
+    const std::vector<Matrix34> start{world_configuration, world_configuration};
+    for (int n = 0; n < states; ++n) {
+        LoadArguments at;
+        std::array<Vector3, 2> w{random.vector(), random.vector()};
+        for (int b = 0; b < 2; ++b) {
+            at.X[b] = random.rigid();
+            at.V[b] = rate(at.X[b], random.vector(), w[static_cast<std::size_t>(b)]);
+        }
+        const Load load =
+            rotational_damper("l", 1, 0, 0.7, start);   // of body 0, which stands first, against 1
+        ASSERT_EQ(load.bodies, (std::vector<int>{0, 1}));
+        const LoadForces F = forces(load, at);
+        const Vector3 couple = -0.7 * (w[0] - w[1]);
+        EXPECT_LT(norm(moment(at.X[0], F[0]) - couple), 1e-13);
+        EXPECT_LT(norm(moment(at.X[1], F[1]) + couple), 1e-13);
+        for (const Matrix34& of_body : F) EXPECT_EQ(norm(of_body.column(0)), 0);
+        EXPECT_NEAR(load_power(load, at), -dot(couple, couple) / 0.7, 1e-13);
+        EXPECT_NEAR(power_without_potential(load, at), -dot(couple, couple) / 0.7, 1e-13);
+        const Vector3 told{load.readings[0].value(at), load.readings[1].value(at),
+                           load.readings[2].value(at)};
+        EXPECT_LT(norm(directors(at.X[1]) * told - couple), 1e-13) << "in axes of the first one named";
+    }
+    EXPECT_THROW(rotational_damper("l", 0, 1, -1, start), InputError);
+    EXPECT_THROW(rotational_damper("l", 0, 0, 1, start), InputError);
+}
+
+/// A bushing's frames turned by 2.5 rad, where its rotation vector's rate is not the angular velocity.
+TEST(Bushing, IsDampedByTheRateOfItsVectorOrByTheAngularVelocity)
+{
+    Random random(9);
+    const std::vector<Matrix34> start{world_configuration, world_configuration};
+    Bushing law;
+    for (int k = 3; k < 6; ++k) law.damping(k, k) = 0.7;
+    for (int n = 0; n < 100; ++n) {
+        LoadArguments at;
+        const Vector3 w = random.vector(), turn = 2.5 * random.unit();
+        at.X[1] = configuration({}, directors_from_rotation_vector(turn));
+        at.V[1] = rate(at.X[1], {}, w);
+        for (const bool by_spin : {true, false}) {
+            law.by_angular_velocity = by_spin;
+            const Load load = bushing("l", 0, {}, 1, {}, law, start);
+            const std::size_t second = load.bodies[0] == 1 ? 0 : 1;
+            LoadArguments seen = at;
+            seen.X[0] = load.bodies[0] == 1 ? at.X[1] : at.X[0];
+            seen.X[1] = load.bodies[0] == 1 ? at.X[0] : at.X[1];
+            seen.V[0] = load.bodies[0] == 1 ? at.V[1] : at.V[0];
+            seen.V[1] = load.bodies[0] == 1 ? at.V[0] : at.V[1];
+            const Vector3 gap =
+                moment(seen.X[static_cast<int>(second)], forces(load, seen)[second]) + 0.7 * w;
+            EXPECT_EQ(norm(gap) < 1e-13, by_spin) << norm(gap);
+        }
     }
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "livens/multibody/nearest_inertia.h"
 #include "unit/multibody/random_states.h"
 
 namespace livens {
@@ -175,6 +176,34 @@ TEST(MassProperties, ImpossibleInertiasAreRefusedByTheLawTheyBreak)
         expect_complaint(check(principal(-1e-11, 1, 1)), "inertia-negative", "body[x].inertia");
         expect_complaint(check(principal(-1, -1, -1)), "inertia-negative", "body[x].inertia");
     }
+}
+
+TEST(MassProperties, MomentsThatWereMovedToTheCentreMayBeNegativeByTheirRounding)
+{
+    // As a link of iCub came out of its parts: M |c|^2 is 1.25e-3 kg m^2.
+    const auto check = [](double moment, const Vector3& center) {
+        return [=] { check_mass_properties({0.5, center, {moment, 0, 0, 0, 1e-21, 0, 0, 0, 0}}, "body[x]"); };
+    };
+    EXPECT_NO_THROW(check(-5.4e-20, {0, 0, -0.05})());
+    EXPECT_NO_THROW(check(-1e-15, {0, 0, -0.05})());
+    expect_complaint(check(-2e-15, {0, 0, -0.05}), "inertia-negative", "body[x].inertia");
+    expect_complaint(check(-5.4e-20, {}), "inertia-negative", "body[x].inertia");
+}
+
+TEST(MassProperties, TheNearestInertiaHasTheEulerTensorWithoutItsNegativePart)
+{
+    Random random(5);
+    for (int i = 0; i < 100; ++i) {
+        // E = diag(-0.0025, 0.0055, 0.0045), so that J = diag(0.01, 0.0045, 0.0055) is left of it.
+        const MassProperties broken = principal(0.01, 0.002, 0.003), mended = principal(0.01, 0.0045, 0.0055);
+        const Matrix3 R = i == 0 ? identity<3>() : random.rotation();
+        const Matrix3 nearest = nearest_inertia(turned(broken, R).inertia);
+        EXPECT_LT(norm(nearest - turned(mended, R).inertia), 1e-16);
+        EXPECT_NO_THROW(check_mass_properties({1, {}, nearest}, "body[x]"));
+        const Matrix3 legal = turned(principal(1, 2, 3), R).inertia;
+        EXPECT_EQ(nearest_inertia(legal), legal);
+    }
+    EXPECT_EQ(nearest_inertia(principal(-1, -1, -1).inertia), Matrix3{});
 }
 
 TEST(MassProperties, WrongMassAndAsymmetryAreRefused)

@@ -66,6 +66,9 @@ public:
                  const NearFactor& near = {});
     /// The basis of a prepared state, where there is none.
     void add_basis(InstantState& state) const;
+    /// X of a prepared state <- what its chosen rows allow there, nearest in the mass metric, and prepared
+    /// anew. False: it does not come within 1e-12 of their scale, and all is as it was.
+    bool close(InstantState& state);
     /// velocity and momentum <- the parts of a given twist momentum N^T P that the constraints and their
     /// drives allow, Ghat velocity = -dPhi/dt (explicit). `lambda` <- the multipliers of the rest, W Ghat^T
     /// lambda = N^T P - Mr velocity; all rows of the model, zero for rows that are not chosen.
@@ -93,6 +96,7 @@ private:
     bool prepare_singular(const InstantState& state);
     void apply_mass(const InstantState& state, const double* y, double* out);
     void solve(const InstantState& state, double* forces, double* y);
+    double move_towards_rows(InstantState& state);
     void follow_drives(const InstantState& state, double* y) const;
     void particular(const InstantState& state, Side from, double* y) const;
     void scatter(const InstantState& state, double* y, double weight, double* lambda) const;

@@ -205,6 +205,7 @@ RateGap worst_rate(const Model& model, const State& state, const RowWrenches& wr
                            project_help};
     }
     const std::vector<double> rates = joint_rates(model, state.X, state.V);
+    const bool rests = std::ranges::all_of(state.V, [](const Matrix34& V) { return V == Matrix34{}; });
     for (int r = 0; r < model.n_rows(); ++r) {
         const double bound = rate_bound(state, wrenches[r], centers, speed, length);
         const double rate = rates[r] + drives[r];
@@ -213,7 +214,8 @@ RateGap worst_rate(const Model& model, const State& state, const RowWrenches& wr
         fault.relative = relative;
         fault.complaint = {"start-velocity",
                            joint_path(model, r),
-                           "the initial velocities violate " + model.row_name(r),
+                           std::string("the initial velocities") + (rests ? ", all zero," : "") +
+                               " violate " + model.row_name(r),
                            "dPhi/dt = " + number(rate),
                            "",
                            "",
@@ -245,6 +247,14 @@ Fault settle_velocities(const Model& model, const Model& the_model, StartPolicy 
     const std::vector<Matrix34> before = state.V;
     state.V = nearest_rates(model, state.X, state.V, independent, drives);
     if (fault.relative <= start_tolerance) return {};
+    RateGap left = worst_rate(model, state, wrenches, centers, drives,
+                              std::max(largest_speed(model, state, centers), speed));
+    if (left.relative > start_tolerance) {   // of a row that is redundant
+        left.complaint.code = "joint-contradiction";
+        left.complaint.message += ", whatever they are: the other joints and drives want another rate";
+        left.complaint.help = "make the laws of the drives agree, or leave one of them out";
+        return left.complaint;
+    }
     const std::string changes = rate_changes(model, state.X, before, state.V);
     notes.push_back(fault.complaint.message + " (" + fault.complaint.value +
                     "); they were projected onto the joints" + (changes.empty() ? "" : ": " + changes));

@@ -36,7 +36,7 @@ struct ConsistentStart {
 ///   `start-position`      |Phi| / scale > 1e-9 under StartPolicy::check, or the projection does not converge
 ///   `start-velocity`      |dPhi/dt| too large (1e-9 of the largest speed), or rates that deform the triad
 ///   `joint-branch`        axes that must coincide are opposite
-///   `joint-contradiction` a redundant row that cannot be fulfilled with the others
+///   `joint-contradiction` a redundant row that cannot be fulfilled, or moved, with the others
 ///   `spin-without-inertia` a motion that no joint holds and that carries no inertia (a needle's free spin)
 ConsistentStart consistent_start(const Model& model, const State& start, StartPolicy policy);
 

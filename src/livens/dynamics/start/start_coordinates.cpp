@@ -15,8 +15,10 @@
 #include "livens/dynamics/rows/projection.h"
 #include "livens/dynamics/rows/rank.h"
 #include "livens/dynamics/rows/rows.h"
+#include "livens/dynamics/start/free_directions.h"
 #include "livens/dynamics/start/rate_changes.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/joints.h"
 #include "livens/multibody/joints/drives.h"
 #include "livens/solvers/dense.h"
 #include "livens/time/time_laws.h"
@@ -29,8 +31,7 @@ constexpr double step = 0.1;   // of a coordinate, rad or lengths of the model
 // A thousand turns, which take some 63,000 steps.
 constexpr double farthest = 2000 * std::numbers::pi;
 constexpr int most_halvings = 12;
-constexpr double noticed = 1e-9;      // change of a stated velocity, of the largest
-constexpr double held_below = 1e-6;   // part of a coordinate's row, of norm one, that is free
+constexpr double noticed = 1e-9;   // change of a stated velocity, of the largest
 
 /// One coordinate of one joint, and what becomes of it.
 struct Led {
@@ -111,53 +112,28 @@ Model led_model(const Model& model, const std::vector<Led>& all, std::span<const
     return with;
 }
 
-/// What rows leave free, of which coordinates take one direction after the other.
-class FreeDirections {
-public:
-    FreeDirections(const Model& model, std::span<const Matrix34> X, const std::vector<int>& independent)
-        : n_(6 * model.n_bodies()), rank_(static_cast<int>(independent.size()))
-    {
-        basis_.resize(n_, rank_);
-        const TwistRows held = twist_rows(model, X, independent);
-        for (int k = 0; k < rank_; ++k) {
-            std::fill_n(basis_.column(k), n_, 0.0);
-            spread(held.rows[k], basis_.column(k));
+/// Rows behind all others that hold bodies as they stand; what they hold moves on as it is stated.
+std::vector<int> add_held(Model& led, std::span<const Matrix34> X, const std::vector<StatedVelocity>& stated)
+{
+    std::vector<int> rows;
+    for (const StatedVelocity& one : stated) {
+        const Matrix34& here = X[static_cast<std::size_t>(one.body)];
+        Joint held;
+        held.name = "\nheld " + std::to_string(one.body);
+        held.type = "held";
+        held.second = one.body;
+        if (one.of_place) held.rows = coincidence_rows(world, point(here.column(0)), one.body, point({}), 1);
+        if (one.of_turn && !led.bodies()[static_cast<std::size_t>(one.body)].is_point) {
+            const Joint weld_here = weld("", world, one.body, {}, world_configuration, here);
+            held.rows.insert(held.rows.end(), weld_here.rows.begin() + 3, weld_here.rows.end());
         }
-        std::vector<int> order(independent.size());
-        basis_.factorise_pivoted(rank_, order);
+        const int first = led.n_rows();
+        if (held.rows.empty()) continue;
+        led.add_joint(std::move(held));
+        for (int r = first; r < led.n_rows(); ++r) rows.push_back(r);
     }
-
-    /// False if rows and what was taken before hold it.
-    bool take(const BodyRow& row)
-    {
-        std::vector<double> y(n_, 0.0);
-        spread(row, y.data());
-        basis_.apply_transposed(y.data());
-        // In the coordinates of Q the first entries are what joints hold; the rest is what they leave free.
-        std::fill_n(y.begin(), rank_, 0.0);
-        for (int pass = 0; pass < 2; ++pass)   // the second takes the rounding of the first
-            for (const std::vector<double>& other : taken_) {
-                const double part = std::inner_product(y.begin(), y.end(), other.begin(), 0.0);
-                for (int i = 0; i < n_; ++i) y[i] -= part * other[i];
-            }
-        const double size = std::sqrt(std::inner_product(y.begin(), y.end(), y.begin(), 0.0));
-        if (!(size > held_below)) return false;
-        for (double& entry : y) entry /= size;
-        taken_.push_back(std::move(y));
-        return true;
-    }
-
-private:
-    static void spread(const BodyRow& row, double* y)
-    {
-        for (const BodyRow::Part& part : row.parts)
-            for (int i = 0; i < 6; ++i) y[6 * part.body + i] += part.entries[i];
-    }
-
-    int n_, rank_;
-    OrthogonalBasis basis_;
-    std::vector<std::vector<double>> taken_;
-};
+    return rows;
+}
 
 /// Rows of a led model that are independent: of the joints, of what is wanted, and of what can be kept.
 struct Chosen {
@@ -167,17 +143,19 @@ struct Chosen {
 
 /// Throws for a wanted coordinate that joints or those before it hold.
 Chosen choose(const Model& model, const std::vector<Led>& all, std::span<const Matrix34> X, double t,
-              bool is_wanted(const Led&))
+              bool is_wanted(const Led&), const std::vector<StatedVelocity>& stated = {})
 {
-    const Model led = frozen(led_model(model, all, X, Law::hold), {t});
+    Model with = led_model(model, all, X, Law::hold);
+    const std::vector<int> held = add_held(with, X, stated);
+    const Model led = frozen(with, {t});
     std::vector<int> joints(static_cast<std::size_t>(model.n_rows())), coordinates(all.size());
     std::iota(joints.begin(), joints.end(), 0);
     std::iota(coordinates.begin(), coordinates.end(), model.n_rows());
     Chosen chosen{row_rank(led, X, joints).independent, {}};
     FreeDirections free(led, X, chosen.rows);
     const TwistRows twists = twist_rows(led, X, coordinates);
-    // Stated coordinates first: the others only keep what is left.
-    for (const bool wanted : {true, false})
+    // Stated coordinates first, then bodies: the other coordinates only keep what is left.
+    for (const bool wanted : {true, false}) {
         for (std::size_t i = 0; i < all.size(); ++i) {
             if (is_wanted(all[i]) != wanted) continue;
             if (free.take(twists.rows[i])) {
@@ -188,6 +166,11 @@ Chosen choose(const Model& model, const std::vector<Led>& all, std::span<const M
                        "cannot be given: joints, or the coordinates given before it, determine it", "",
                        "leave it out, or give the independent ones");
         }
+        if (!wanted) break;
+        const TwistRows of_bodies = twist_rows(led, X, held);
+        for (std::size_t i = 0; i < held.size(); ++i)
+            if (free.take(of_bodies.rows[i])) chosen.rows.push_back(held[i]);
+    }
     return chosen;
 }
 
@@ -275,34 +258,60 @@ Model restated(const Model& model, const State& state, const std::vector<Led>& a
     std::vector<Joint> joints = model.joints();
     for (const Led& led : all) joints[led.joint].coordinates[led.coordinate].at_stated = led.to;
     for (Joint& joint : joints) moved.add_joint(std::move(joint));
+    for (const NamedPoint& point : model.points()) moved.add_point(point);
     return moved;
 }
 
-/// Rates of the wanted and the kept coordinates, the others nearest to what bodies state.
-void settle_rates(const Model& model, const std::vector<Led>& all, State& state, MovedStart& moved)
+/// Rates of the wanted and the kept coordinates; of bodies those of `held`, and the others nearest to V.
+std::vector<Matrix34> fitting_rates(const Model& model, const std::vector<Led>& all, const State& state,
+                                    const std::vector<StatedVelocity>& held)
 {
     const auto is_wanted = [](const Led& led) { return led.has_rate; };
-    const Chosen chosen = choose(model, all, state.X, 0, is_wanted);
-    const Model led = led_model(model, all, state.X, Law::turn);
-    const std::vector<Matrix34> V =
-        nearest_rates(frozen(led, {0}), state.X, state.V, chosen.rows, drive_rates(led, {0}, state.X));
-    double fastest = 0;
-    for (const Matrix34& v : V) fastest = std::max(fastest, norm(v));
-    for (std::size_t b = 0; b < V.size(); ++b) {
-        const double change = norm(V[b] - state.V[b]);
-        if (norm(state.V[b]) > 0 && change > noticed * fastest)
-            moved.changed.push_back("the given velocities of body '" + model.bodies()[b].name +
-                                    "' were changed by " +
-                                    velocity_change(model.bodies()[b], state.X[b], state.V[b], V[b]) +
-                                    " to fit the coordinates of the start");
-    }
+    const Chosen chosen = choose(model, all, state.X, 0, is_wanted, held);
+    Model led = led_model(model, all, state.X, Law::turn);
+    const std::vector<int> rows = add_held(led, state.X, held);
+    const Model now = frozen(led, {0});
+    std::vector<double> drives = drive_rates(led, {0}, state.X);
+    drives.resize(static_cast<std::size_t>(led.n_rows()), 0.0);
+    const std::vector<double> stated = joint_rates(now, state.X, state.V);
+    for (const int r : rows) drives[r] = -stated[r];
+    return nearest_rates(now, state.X, state.V, chosen.rows, drives);
+}
+
+void settle_rates(const Model& model, const std::vector<Led>& all, const std::vector<StatedVelocity>& stated,
+                  State& state, MovedStart& moved)
+{
+    std::vector<StatedVelocity> said = stated;
+    for (int b = 0; b < model.n_bodies(); ++b)
+        if (norm(state.V[b]) > 0 && std::ranges::find(said, b, &StatedVelocity::body) == said.end())
+            said.push_back({b});
+    const auto changed_bodies = [&](const std::vector<Matrix34>& V) {
+        double fastest = 0;
+        for (const Matrix34& v : V) fastest = std::max(fastest, norm(v));
+        std::vector<int> bodies;
+        for (const StatedVelocity& one : said) {
+            Matrix34 change = V[one.body] - state.V[one.body];
+            if (!one.of_place) change.set_column(0, {});
+            if (!one.of_turn) change = configuration(change.column(0), Matrix3{});
+            if (norm(change) > noticed * fastest) bodies.push_back(one.body);
+        }
+        return bodies;
+    };
+    std::vector<Matrix34> V = fitting_rates(model, all, state, stated);
+    // If not all that is stated can be kept, none of it has a claim to be: all move by the least.
+    if (!stated.empty() && !changed_bodies(V).empty()) V = fitting_rates(model, all, state, {});
+    for (const int b : changed_bodies(V))
+        moved.changed.push_back("the given velocities of body '" + model.bodies()[b].name +
+                                "' were changed by " +
+                                velocity_change(model.bodies()[b], state.X[b], state.V[b], V[b]) +
+                                " to fit the coordinates of the start");
     state.V = V;
 }
 
 }   // namespace
 
 MovedStart move_start(const Model& model, const std::vector<StartCoordinate>& wanted, StartPolicy policy,
-                      double t)
+                      double t, const std::vector<StatedVelocity>& given)
 {
     if (model.has_drives() || !model.loads().empty() || !model.sensors().empty())
         throw std::logic_error("a start is moved before drives, loads and sensors are there");
@@ -344,7 +353,7 @@ MovedStart move_start(const Model& model, const std::vector<StartCoordinate>& wa
     const Model there = restated(model, state, all);
     const bool is_moving = std::ranges::any_of(all, [](const Led& one) { return one.rate != 0; }) ||
                            std::ranges::any_of(V, [](const Matrix34& v) { return norm(v) > 0; });
-    if (is_moving) settle_rates(there, all, state, moved);
+    if (is_moving) settle_rates(there, all, given, state, moved);
     moved.model = restated(there, state, all);
     return moved;
 }

@@ -38,7 +38,8 @@ std::vector<NamedQuantity> columns_of(const Quantities& quantities)
     std::vector<NamedQuantity> all;
     const auto take = [&](QuantityOf first, QuantityOf last) {
         for (const NamedQuantity& q : quantities.all())
-            if (q.of >= first && q.of <= last && q.of != QuantityOf::load &&
+            if (q.of >= first && q.of <= last && (q.of != QuantityOf::load || q.what == "effort") &&
+                !q.is_on_request &&
                 std::ranges::find(left_out, q.what) == std::end(left_out))
                 all.push_back(q);
     };

@@ -22,6 +22,8 @@ void write_gltf(const std::filesystem::path& file, const ExportInput& input);
 void write_pvd(const std::filesystem::path& file, const ExportInput& input);
 /// `word`: of the format, "png", "svg", "webm" or "gif".
 void write_picture(const std::filesystem::path& file, const ExportInput& input, std::string_view word);
+/// That bodies turn back between its frames.
+std::string doubt_of_video(const ExportInput& input, std::string_view word);
 
 /// How a list of surfaces and a surface begin.
 inline constexpr std::string_view pvd_head =

@@ -2,12 +2,14 @@
 // Stills and videos of a motion: the page of the report makes them, in a browser without a window.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <zlib.h>
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/base/version.h"
+#include "livens/diagnostics/sample.h"
 #include "livens/io/exports/browser.h"
 #include "livens/io/exports/formats.h"
 #include "livens/io/json.h"
@@ -28,6 +30,8 @@ constexpr Kind kinds[] = {
 constexpr int least_side = 16, most_side = 8192;                 // px, as the page has it
 constexpr double most_frames = 20'000;                           // likewise
 constexpr double least_duration = 0.01, most_duration = 86400;   // s
+constexpr int frame_looks = 60;   // at what happens between frames, as the page does
+constexpr double bent = 0.25;     // off a straight line between frames, as a part of it: a third of a turn
 // s of video for so many of motion; a shorter or longer motion is slowed or hurried to the usual length
 constexpr double short_span = 2, long_span = 40, usual_duration = 8;
 
@@ -113,6 +117,32 @@ std::string signed_picture(std::string picture, std::string_view kind)
 }
 
 }   // namespace
+
+std::string io_internal::doubt_of_video(const ExportInput& input, std::string_view word)
+{
+    const Motion& motion = input.run.motion;
+    const Course course = course_of(input.picture, motion, *std::ranges::find(kinds, word, &Kind::word));
+    const double step = (course.to - course.from) / (course.duration * course.rate),
+                 span = course.to - course.from - step;
+    const auto centres = [&](double t) { return sample_bodies(input.scenario.model, motion, t); };
+    double way = 0, off = 0;
+    for (int look = 0; look < frame_looks && span > 0; ++look) {
+        // Places that no motion keeps step with.
+        const double t = course.from + span * std::fmod(0.5 + look * std::numbers::phi, 1.0);
+        const std::vector<BodySample> a = centres(t), between = centres(t + 0.5 * step),
+                                      b = centres(t + step);
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            const Vector3 &from = a[i].center_of_mass, &to = b[i].center_of_mass;
+            way += norm(to - from);
+            off += norm(between[i].center_of_mass - 0.5 * (from + to));
+        }
+    }
+    if (!(off > bent * way && off > 1e-9 * frame_looks * input.scenario.model.length())) return "";
+    return "frames are " + to_text(step, 2) +
+           " s of the motion apart, and bodies turn back in between, so that another motion is seen: choose "
+           "a "
+           "part of it, a longer duration or more frames per second";
+}
 
 void io_internal::write_picture(const std::filesystem::path& file, const ExportInput& input,
                                 std::string_view word)

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Series over time that the page cannot make of poses: energies, coordinates, reactions, loads, sensors.
-// Numbers are bounded, so instants become fewer as channels become more. The page interpolates them with the
-// degree of the elements (docs/program.md).
+// Numbers are bounded: where all that the elements have is too much, the page gets fewer instants of each
+// element, then of several together, and is told what that loses (docs/results.md).
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
 
 #include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/diagnostics.h"
@@ -16,8 +18,10 @@ namespace livens::inline io_internal {
 
 namespace {
 
-constexpr double most_numbers = 4e5;   // of all series, about: what they add to a page is to stay below 2 MB
-constexpr double most_instants = 700, fewest_instants = 120;
+constexpr double bytes_of_number = 8;   // of what poses may take: a series takes half as much as they do
+constexpr double fewest_instants = 120;
+constexpr double no_signal = 1e-12;   // of the largest number of all: rounding
+constexpr int n_places = 400;          // at what series lose between their instants
 
 struct Channel {
     const char* kind;   ///< "energy", "joint", "reaction", "drive", "body", "load", "sensor"
@@ -31,19 +35,22 @@ struct Channel {
 struct CurveInstants {
     std::vector<double> ends;
     int degree = 0;
+    bool is_whole = true;   ///< as many instants as the elements resolve
     std::vector<double> nodes{0};
 
-    CurveInstants(const TimeMesh& mesh, std::size_t n_channels, int most_degree)
+    CurveInstants(const TimeMesh& mesh, std::size_t n_channels, int most_degree, double most_bytes)
     {
         const double wanted =
-            std::clamp(most_numbers / static_cast<double>(n_channels), fewest_instants, most_instants);
+            std::max(most_bytes / bytes_of_number / static_cast<double>(n_channels), fewest_instants);
         const double n = mesh.n_elements();
         // Elements are taken together where even two instants each would be too many.
         const auto merged = static_cast<std::size_t>(std::max(1.0, std::ceil(2 * n / wanted)));
         for (std::size_t e = 0; e < mesh.ends.size(); e += merged) ends.push_back(mesh.ends[e]);
         if (ends.back() != mesh.ends.back()) ends.push_back(mesh.ends.back());
         if (n < 1) return;
-        degree = merged > 1 ? 1 : std::clamp(static_cast<int>(wanted / n) - 1, 1, most_degree);
+        degree =
+            merged > 1 ? 1 : std::clamp(static_cast<int>(std::min(wanted / n, 99.0)) - 1, 1, most_degree);
+        is_whole = degree == most_degree;
         nodes = lobatto_basis(degree).nodes();
     }
     std::size_t n_elements() const { return std::max<std::size_t>(ends.size() - 1, 1); }
@@ -74,7 +81,8 @@ public:
     Curves(const Scenario& scenario, const Run& run)
         : model_(scenario.model), motion_(run.motion), quantities_(model_, motion_, run.body_names),
           equations_(of_equations(quantities_, run.body_names.size())), coordinates_(model_, motion_),
-          sensors_(model_, motion_), joints_(model_, motion_), turns_(model_, motion_),
+          sensors_(model_, motion_), accelerations_(model_, motion_),
+          joints_(model_, motion_, accelerations_), turns_(model_, motion_),
           lines_(lines_of_action(model_, motion_)),
           has_reactions_(!sample_joints(model_, motion_, motion_.start()).empty())
     {
@@ -107,28 +115,28 @@ public:
     /// The values of all channels. `is_before`: from the left, where they jump.
     std::vector<double> at(double t, bool is_before) const
     {
-        const State state = sample_state(motion_, t);
+        const State given = sample_state(motion_, t), state = accelerations_.on_joints(given);
         const std::vector<double> angles = turns_.at(state);
         const Instant instant{t, is_before ? Side::left : Side::right};
         std::vector<double> all{kinetic_energy(model_, state.X, state.V),
                                 potential_energy(model_, instant, state.X, state.V, angles)};
-        for (const CoordinateValue& c : coordinates_.at(t)) {
+        for (const CoordinateValue& c : coordinates_.at(state)) {
             all.push_back(c.value);
             all.push_back(c.rate);
         }
-        if (has_reactions_) add_reactions(all, t, is_before);
+        if (has_reactions_) add_reactions(all, given, is_before);
         std::vector<double> numbers(static_cast<std::size_t>(quantities_.n_numbers()));
-        quantities_.at(state, instant.side, equations_, numbers);
+        quantities_.at(given, instant.side, equations_, numbers);
         for (const NamedQuantity& q : equations_)
             for (int i = 0; i < q.size; ++i) all.push_back(numbers[static_cast<std::size_t>(q.first + i)]);
         if (std::ranges::any_of(lines_, is_told)) {
-            const std::vector<Reaction> given = load_reactions(model_, lines_, state, angles, instant.side);
+            const std::vector<Reaction> forces = load_reactions(model_, lines_, state, angles, instant.side);
             for (std::size_t l = 0; l < lines_.size(); ++l) {
-                if (is_told(lines_[l])) all.insert(all.end(), given[l].force.a, given[l].force.a + 3);
-                if (lines_[l].place) all.insert(all.end(), given[l].torque.a, given[l].torque.a + 3);
+                if (is_told(lines_[l])) all.insert(all.end(), forces[l].force.a, forces[l].force.a + 3);
+                if (lines_[l].place) all.insert(all.end(), forces[l].torque.a, forces[l].torque.a + 3);
             }
         }
-        for (const double x : sensors_.at(t)) all.push_back(x);
+        for (const double x : sensors_.at(given, instant.side)) all.push_back(x);
         return all;
     }
 
@@ -137,7 +145,7 @@ private:
     void add_channels(const NamedQuantity& q)
     {
         const bool is_coordinate = q.of == QuantityOf::coordinate;
-        std::string name = q.what.starts_with("drive_") ? q.what.substr(6) : q.what;
+        std::string name = q.what != "effort" ? q.what : q.unit == "N m" ? "torque" : "force";
         std::ranges::replace(name, '_', ' ');
         const char* const kind = is_coordinate ? "joint" : q.of == QuantityOf::body ? "body" : "drive";
         const int index =
@@ -146,9 +154,9 @@ private:
             channels_.push_back({kind, index, name + (q.size > 1 ? " " : "") + component_of(q, i), q.unit});
     }
     static bool is_told(const LineOfAction& line) { return line.points[0] || line.place; }
-    void add_reactions(std::vector<double>& all, double t, bool is_before) const
+    void add_reactions(std::vector<double>& all, const State& state, bool is_before) const
     {
-        const std::vector<JointSample> joints = joints_.at(sample_state(motion_, t));
+        const std::vector<JointSample> joints = joints_.at(state);
         for (std::size_t j = 0; j < model_.joints().size(); ++j) {
             const double nan = std::numeric_limits<double>::quiet_NaN();
             Reaction r{{nan, nan, nan}, {nan, nan, nan}};
@@ -163,6 +171,7 @@ private:
     std::vector<NamedQuantity> equations_;
     JointCoordinates coordinates_;
     SensorReadings sensors_;
+    Accelerations accelerations_;
     JointSampler joints_;
     LoadTurns turns_;
     std::vector<LineOfAction> lines_;
@@ -170,27 +179,134 @@ private:
     std::vector<Channel> channels_;
 };
 
+using Columns = std::vector<std::vector<double>>;   // of channels, node after node
+
+/// What the page shows between instants, and how far it is off.
+class Between {
+public:
+    Between(const Curves& curves, const CurveInstants& instants, const Columns& columns)
+        : curves_(curves), instants_(instants), columns_(columns), basis_(lobatto_basis(instants.degree)),
+          weights_(instants.nodes.size())
+    {
+        for (std::size_t c = 0; c < columns.size(); ++c) {
+            double low = columns[c][0], high = low;
+            for (const double x : columns[c]) {   // reactions that are not bounded are no numbers
+                low = x < low ? x : low;
+                high = x > high ? x : high;
+                largest_ = std::abs(x) > largest_ ? std::abs(x) : largest_;
+            }
+            double& range = ranges_[curves.channels()[c].unit];
+            if (high - low > range) range = high - low;
+        }
+    }
+
+    /// At a place of an element, as a part of the largest range that a series of the same unit has.
+    double loss(std::size_t e, double s)
+    {
+        basis_.values(s, weights_);
+        const double t = instants_.ends[e] + s * (instants_.ends[e + 1] - instants_.ends[e]);
+        const std::vector<double> truth = curves_.at(t, false);
+        const std::size_t n_nodes = weights_.size();
+        double loss = 0;
+        for (std::size_t c = 0; c < columns_.size(); ++c) {
+            double shown = 0;
+            for (std::size_t a = 0; a < n_nodes; ++a) shown += weights_[a] * columns_[c][e * n_nodes + a];
+            const double range = ranges_[curves_.channels()[c].unit], off = std::abs(shown - truth[c]);
+            if (range > no_signal * largest_ && off / range > loss) loss = off / range;
+        }
+        return loss;
+    }
+    double largest_loss()
+    {
+        const std::size_t n = instants_.n_elements();
+        double all = 0;
+        for (int look = 0; look < n_places; ++look) {
+            // Places that no motion keeps step with.
+            const double place = std::fmod(0.5 + look * std::numbers::phi, 1.0) * static_cast<double>(n);
+            const std::size_t e = std::min(static_cast<std::size_t>(place), n - 1);
+            all = std::max(all, loss(e, place - static_cast<double>(e)));
+        }
+        return all;
+    }
+
+private:
+    const Curves& curves_;
+    const CurveInstants& instants_;
+    const Columns& columns_;
+    LagrangeBasis basis_;
+    std::vector<double> weights_;
+    std::map<std::string, double> ranges_;   // of units
+    double largest_ = 0;
+};
+
+/// All channels at the nodes of an element.
+void take(const Curves& curves, const CurveInstants& instants, std::size_t e, Columns& columns)
+{
+    for (std::size_t a = 0; a < instants.nodes.size(); ++a) {
+        // An element end is told twice, from the left as the last node and from the right as the first:
+        // jumps stay jumps.
+        const std::vector<double> values = curves.at(instants.at(e, a), a > 0 && instants.nodes[a] == 1);
+        for (std::size_t c = 0; c < columns.size(); ++c) columns[c].push_back(values[c]);
+    }
+}
+
+/// Halves elements in which series do what no polynomial follows, as where a steep law turns over, as long as
+/// there is room. False: some are left.
+bool refine(const Curves& curves, CurveInstants& instants, Columns& columns, double most_bytes)
+{
+    constexpr double seen = 2e-3;   // of the range
+    constexpr double places[] = {0.23, 0.61, 0.86};
+    const double most = most_bytes / bytes_of_number / static_cast<double>(columns.size());
+    for (int round = 0; round < 8; ++round) {
+        Between between(curves, instants, columns);
+        const std::size_t n = instants.n_elements(), n_nodes = instants.nodes.size();
+        std::vector<bool> is_halved(n);
+        std::size_t n_halved = 0;
+        for (std::size_t e = 0; e < n; ++e) {
+            is_halved[e] = std::ranges::any_of(places, [&](double s) { return between.loss(e, s) > seen; });
+            n_halved += is_halved[e] ? 1 : 0;
+        }
+        if (n_halved == 0) return true;
+        if (static_cast<double>((n + n_halved) * n_nodes) > most) return false;
+        CurveInstants finer = instants;
+        finer.ends = {instants.ends[0]};
+        Columns all(columns.size());
+        for (std::size_t e = 0; e < n; ++e) {
+            if (is_halved[e]) finer.ends.push_back(0.5 * (instants.ends[e] + instants.ends[e + 1]));
+            finer.ends.push_back(instants.ends[e + 1]);
+            const std::size_t last = finer.ends.size() - 2;
+            if (is_halved[e])
+                for (const std::size_t half : {last - 1, last}) take(curves, finer, half, all);
+            for (std::size_t c = 0; c < all.size() && !is_halved[e]; ++c)
+                all[c].insert(all[c].end(), columns[c].begin() + static_cast<std::ptrdiff_t>(e * n_nodes),
+                              columns[c].begin() + static_cast<std::ptrdiff_t>((e + 1) * n_nodes));
+        }
+        instants = std::move(finer);
+        columns = std::move(all);
+    }
+    return false;
+}
+
 }   // namespace
 
-void write_curves(ReportData& data, const Scenario& scenario, const Run& run)
+void write_curves(ReportData& data, const Scenario& scenario, const Run& run, double most_bytes)
 {
     const Curves curves(scenario, run);
-    const CurveInstants instants(run.motion.mesh, curves.channels().size(), std::max(run.motion.X.degree, 2));
-    std::vector<std::vector<double>> columns(curves.channels().size());
-    for (std::size_t e = 0; e < instants.n_elements(); ++e)
-        for (std::size_t a = 0; a < instants.nodes.size(); ++a) {
-            // An element end is told twice, from the left as the last node and from the right as the first:
-            // jumps stay jumps.
-            const std::vector<double> values = curves.at(instants.at(e, a), a > 0 && instants.nodes[a] == 1);
-            for (std::size_t c = 0; c < columns.size(); ++c) columns[c].push_back(values[c]);
-        }
+    CurveInstants instants(run.motion.mesh, curves.channels().size(), std::max(run.motion.X.degree, 2),
+                           most_bytes);
+    Columns columns(curves.channels().size());
+    for (std::size_t e = 0; e < instants.n_elements(); ++e) take(curves, instants, e, columns);
+    const bool is_every = instants.ends.size() == run.motion.mesh.ends.size(),
+               is_seen = run.motion.n_elements() < 1 ||
+                         (instants.is_whole && refine(curves, instants, columns, most_bytes));
     std::vector<double> all;
     for (const std::vector<double>& column : columns) all.insert(all.end(), column.begin(), column.end());
     data.payload.add("curve", Precision::single, all);
     data.payload.add("curve_end", Precision::full, instants.ends);
     JsonWriter& json = data.json;
     json.key("curves").begin_object();
-    json.member("every", instants.ends.size() == run.motion.mesh.ends.size());
+    json.member("every", is_every);
+    json.member("loss", is_seen ? 0.0 : Between(curves, instants, columns).largest_loss());
     json.key("nodes").value(std::span<const double>(instants.nodes)).end_object();
     json.key("channels").begin_array();
     for (const Channel& c : curves.channels()) {

@@ -20,7 +20,7 @@ void write_poses(ReportData& data, const Run& run, double most_bytes);
 void write_scene(ReportData& data, const Scenario& scenario, const Run& run);
 
 /// "curves", "channels": what is plotted over time beside the bodies.
-void write_curves(ReportData& data, const Scenario& scenario, const Run& run);
+void write_curves(ReportData& data, const Scenario& scenario, const Run& run, double most_bytes);
 
 /// "quality": series that tell how right the run is, and the bounds of its acceptance.
 void write_quality(ReportData& data, const Scenario& scenario, const Run& run);

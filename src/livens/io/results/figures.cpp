@@ -88,11 +88,12 @@ constexpr Figure figures[] = {
      &ErrorEstimate::length, false, 2},
     {"largest_reaction", "N", "largest reaction, to which estimated reaction errors are relative",
      &ErrorEstimate::largest_reaction, false, 2},
-    {"growth", "1", "largest growth factor of an initial perturbation, in model lengths and rad",
+    {"growth", "1",
+     "largest factor by which a small change of the initial state grows, in model lengths and rad",
      &Verdict::growth, false, 2},
     {"horizon", "s",
-     "time at which an initial error of 1e-13 has grown to 1e-2, in quantities that rounding reaches; nan "
-     "also if after the end",
+     "time at which an initial error of 1e-13, where rounding can make one, has grown to 1e-2: later, the "
+     "motion is one of many; nan if that is after the end or was not measured",
      &Verdict::horizon, false, 2},
     {"largest_kinetic_energy", "J", "largest over element ends and instants between",
      &BalanceFigures::largest_kinetic},

@@ -274,7 +274,7 @@ Sampled sampled_sensors(RunWriter& archive, const Model& model, const Motion& mo
         "sensor_value", {"time", "reading"}, "1", "none", "what sensors read, in units of reading_unit"};
     const auto add = [sensors = SensorReadings(model, motion)](std::vector<Column>& columns,
                                                                const State& state) {
-        const std::vector<double> read = sensors.at(state);
+        const std::vector<double> read = sensors.at(state.t);
         columns[0].values.insert(columns[0].values.end(), read.begin(), read.end());
     };
     return {{{archive.declare(info, NumberType::real, n_times * names.size())}}, add};

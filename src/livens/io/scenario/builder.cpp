@@ -5,6 +5,7 @@
 #include "livens/io/scenario/builder.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "livens/io/scenario/schema/other_keys.h"
 
@@ -82,12 +83,27 @@ bool means_world(std::string_view name)
 
 }   // namespace
 
-Builder::Builder(const Section& top, const MeshSource& meshes, Findings& findings)
-    : top_(top), findings_(findings), model_(top.vector("gravity")), meshes_(meshes)
+Builder::Builder(Section& top, const Section& run, MeshStore& meshes, Findings& findings)
+    : top_(top), run_(run), findings_(findings), model_(run.vector("gravity")), meshes_(meshes)
 {
     remember("", top);
     for (const std::string_view name : {"world", "time", "method", "start", "end"})
-        for (const Section& section : top.sections(name)) remember(std::string(name), section);
+        for (const Section& section : std::as_const(top).sections(name)) remember(std::string(name), section);
+}
+
+/// `joint[knee].axis` of an included file is `joint[left knee].axis` here.
+void Builder::remember(const Builder& included, const std::string& prefix)
+{
+    for (const auto& [path, place] : included.places_) {
+        const std::size_t open = path.find('[');
+        if (open == std::string::npos) continue;   // of the file itself
+        places_.try_emplace(path.substr(0, open + 1) + prefix + path.substr(open + 1), place);
+    }
+}
+
+bool Builder::is_excused(std::string_view name) const
+{
+    return std::ranges::any_of(excused_, [&](const std::string& prefix) { return name.starts_with(prefix); });
 }
 
 void Builder::remember(const std::string& path, const Section& section)
@@ -104,7 +120,7 @@ void Builder::remember(const std::string& path, const Section& section)
 /// the path that is known counts.
 SourceLocation Builder::find_place(std::string path, const std::string& context) const
 {
-    for (const std::string_view kind : {"body.", "joint.", "drive.", "load."})
+    for (const std::string_view kind : {"body.", "joint.", "drive.", "load.", "point."})
         if (path.substr(0, kind.size()) == kind) path = context + path.substr(kind.size() - 1);
     while (!path.empty()) {
         const auto found = places_.find(path);
@@ -125,9 +141,11 @@ InputError Builder::unknown_name(const std::string& kind, const std::string& nam
     const auto is_it = [&](const Section& one) {
         return (one.has("name") ? one.text("name") : default_name(one)) == name;
     };
-    const bool is_told = findings_.n_errors() > 0 && std::ranges::any_of(top_.sections(kind), is_it);
-    for (const char* other : {"body", "joint", "drive", "load", "sensor"})
-        if (!is_told && kind != other && std::ranges::any_of(top_.sections(other), is_it))
+    const Section& top = top_;
+    const bool is_told =
+        is_excused(name) || (findings_.n_errors() > 0 && std::ranges::any_of(top.sections(kind), is_it));
+    for (const char* other : {"body", "joint", "drive", "load", "sensor", "point"})
+        if (!is_told && kind != other && std::ranges::any_of(top.sections(other), is_it))
             return InputError(
                 {kind + "-unknown", path + "." + kind, "'" + name + "' is a " + other + ", not a " + kind, "",
                  "", "",
@@ -163,15 +181,22 @@ BodyReference Builder::find_body(const std::string& name, const SourceLocation& 
     if (name == "world") return {world, true};
     const auto found = bodies_.find(name);
     if (found != bodies_.end()) return found->second;
+    if (is_excused(name)) return {};
     // Bodies under a wrong key are not known, which has been told of.
-    if (top_.find("body") == nullptr && findings_.n_errors() > 0 && top_.sections("body").empty()) return {};
+    const Section& top = top_;
+    if (top.find("body") == nullptr && findings_.n_errors() > 0 && top.sections("body").empty()) return {};
     std::vector<std::string_view> known;
-    for (const Section& body : top_.sections("body"))
+    for (const Section& body : top.sections("body"))
         if (const Value* v = body.find("name")) known.push_back(v->text);
+    if (!top.sections("include").empty())
+        for (const Body& body : model_.bodies())
+            if (std::ranges::find(known, body.name) == known.end()) known.push_back(body.name);
     known.push_back("world");
+    const bool is_point = model_.find_point(name) >= 0;
     findings_.error(place, "body-unknown",
                     section.label() + " refers to '" + name + "', but there is no such body",
-                    {"", means_world(name) ? "the fixed frame is called \"world\"" : suggest(name, known)});
+                    {is_point ? "'" + name + "' is a point, which 'point' or 'points' takes" : "",
+                     means_world(name) ? "the fixed frame is called \"world\"" : suggest(name, known)});
     return {};
 }
 
@@ -191,9 +216,8 @@ bool Builder::find_pair(const Section& section, std::string_view self, BodyRefer
     return false;
 }
 
-void Builder::close_bodies()
+void Builder::set_length(double length)
 {
-    const double length = model_.n_bodies() > 0 ? model_.length() : 0;
     // A single point mass at rest has no length; slacks relative to the model then are in metres.
     length_ = length > 0 ? length : 1;
 }
@@ -231,6 +255,10 @@ bool check_name(const Section& section)
 std::string default_name(const Section& section)
 {
     const std::string type = section.text("type");
+    // Names of points, where they stand for bodies.
+    if (const Value* two = section.find("points"); two != nullptr && !two->texts.empty())
+        return type + " " + two->texts[0] + "-" + two->texts[1];
+    if (section.is_implied("body")) return type + " on " + section.find("point")->text;
     for (const char* key : {"between", "joints"})
         if (const Value* two = section.find(key)) return type + " " + two->texts[0] + "-" + two->texts[1];
     for (const char* key : {"body", "joint"})

@@ -24,9 +24,13 @@ struct BodyReference {
 
 class Builder {
 public:
-    Builder(const Section& top, const MeshSource& meshes, Findings& findings);
+    /// Of the tables below `top`; time, method and ends are those of `run`, which is the same but of what is
+    /// included.
+    Builder(Section& top, const Section& run, MeshStore& meshes, Findings& findings);
 
+    Section& top() { return top_; }
     const Section& top() const { return top_; }
+    const Section& run() const { return run_; }
     Findings& findings() { return findings_; }
     Model& model() { return model_; }
     const Model& model() const { return model_; }
@@ -34,14 +38,21 @@ public:
     std::vector<std::vector<ShapePart>>& parts() { return parts_; }            ///< of the bodies so far
     std::vector<std::vector<NamedSurface>>& surfaces() { return surfaces_; }   ///< of the bodies so far
     MeshStore& meshes() { return meshes_; }
-    /// Call once all bodies are there: computes length().
-    void close_bodies();
+    /// Once all bodies are there, also those around what is included.
+    void set_length(double length);
     std::unordered_map<std::string, BodyReference>& bodies() { return bodies_; }
 
     /// Makes `path` known as the place of the section, and its keys as `path.key`.
     void remember(const std::string& path, const Section& section);
+    /// Makes known what another builder knows, whose names have the prefix here.
+    void remember(const Builder& included, const std::string& prefix);
+    /// What begins so and is not found has been told of.
+    void excuse(const std::string& prefix) { excused_.push_back(prefix); }
+    bool is_excused(std::string_view name) const;
     /// Makes `path` known as this place, unless it is known.
     void remember(const std::string& path, const SourceLocation& place) { places_.try_emplace(path, place); }
+    /// Of what the core calls so, for what is read at `context`.
+    SourceLocation find_place(std::string path, const std::string& context) const;
     /// Calls `build` and turns an InputError into a finding at the place it names, else at that of `path`.
     /// False if there was one.
     template <class Build>
@@ -67,6 +78,8 @@ public:
     InputError unknown_name(const std::string& kind, const std::string& name, const std::string& path,
                             const std::vector<std::string_view>& known) const;
 
+    /// X of all bodies at the start.
+    std::vector<Matrix34> start_configurations() const { return model_.start().X; }
     /// X of a body at the start, or of the world.
     const Matrix34& start_configuration(int body) const;
     /// From components along a body's directors, as its coordinates are stated, to those of its orthonormal
@@ -80,15 +93,16 @@ public:
 
 private:
     void report(const Complaint& complaint, const std::string& path);
-    SourceLocation find_place(std::string path, const std::string& context) const;
 
-    const Section& top_;
+    Section& top_;
+    const Section& run_;
     Findings& findings_;
     Model model_;
     std::vector<Outline> outlines_;
     std::vector<std::vector<ShapePart>> parts_;
     std::vector<std::vector<NamedSurface>> surfaces_;
-    MeshStore meshes_;
+    MeshStore& meshes_;
+    std::vector<std::string> excused_;
     std::unordered_map<std::string, BodyReference> bodies_;
     std::map<std::string, SourceLocation> places_;
     double length_ = 1;

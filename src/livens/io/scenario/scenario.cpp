@@ -4,18 +4,13 @@
 // are not tried, so that one mistake is told once.
 #include "livens/io/scenario.h"
 
-#include <cerrno>
 #include <cmath>
-#include <fstream>
-#include <new>
 
 #include "livens/base/text.h"
 #include "livens/dynamics/start/prepared.h"
-#include "livens/io/scenario/bodies/bodies.h"
-#include "livens/io/scenario/joints/joints.h"
-#include "livens/io/scenario/loads/load_kinds.h"
+#include "livens/io/scenario/assembly.h"
 #include "livens/io/scenario/run/run.h"
-#include "livens/io/scenario/schema/repeat.h"
+#include "livens/io/scenario/text/reading.h"
 #include "livens/io/scenario/text/tree.h"
 #include "livens/spacetime/solve.h"
 
@@ -26,7 +21,7 @@ namespace {
 bool check_counts(const Section& top, Findings& findings)
 {
     const int before = findings.n_errors();
-    for (const std::string kind : {"body", "joint", "load"}) {
+    for (const std::string kind : {"body", "joint", "load", "point"}) {
         const std::span<const Section> sections = top.sections(kind);
         if (sections.size() > max_bodies)
             sections[max_bodies].error("", "resource-limit",
@@ -90,32 +85,31 @@ std::vector<Override> overrides_of(const ParameterValues& values)
 }
 
 /// Everything behind the parser. The scenario counts if there is no error.
-void build(const Node& root, TreePart part, const MeshSource& meshes, const ParameterValues& values,
+void build(const Node& root, TreePart part, const MeshSource& files, const ParameterValues& values,
            Scenario& scenario, Findings& findings)
 {
     if (!check_format(root, findings)) return;
-    const Parameters parameters(root.find("parameters"), overrides_of(values), findings);
-    std::optional<Node> expanded;
-    if (root.find("repeat") != nullptr && !(expanded = without_repeats(root, parameters, findings))) return;
-    const Section top(expanded ? *expanded : root, root_table(), "the scenario", findings, parameters);
-    if (!check_counts(top, findings)) return;
-    warn_of_gravity(top, findings);
-    // The order is that of references: joints name bodies, the start moves them along joints, drives begin
-    // where the joints stand then, and loads read sensors, except for sensors that read loads.
-    Builder builder(top, meshes, findings);
-    read_bodies(builder);
-    scenario.mesh_files = builder.meshes().files();   // also where there are errors
-    read_joints(builder);
-    move_bodies(builder);
-    read_drives(builder);
-    read_sensors(builder, false);
-    read_loads(builder);
-    read_sensors(builder, true);
+    AssemblySources sources(files, findings);
+    const bool has_file = files.folder && !scenario.file.empty();
+    Assembly assembly(root, has_file ? std::filesystem::path(scenario.file).filename().generic_string() : "",
+                      overrides_of(values), sources);
+    if (!assembly.is_readable() || !check_counts(assembly.top(), findings)) return;
+    warn_of_gravity(assembly.top(), findings);
+    assembly.read_model();
+    scenario.mesh_files = sources.meshes.files();   // also where there are errors
+    scenario.mesh_files.insert(scenario.mesh_files.end(), sources.texts.files().begin(),
+                               sources.texts.files().end());
     if (part == TreePart::model) return;
+    assembly.remember_places();
+    Builder& builder = assembly.builder();
     read_run(builder, scenario);
+    const Section* end = only_section(assembly.top(), "end");
+    // Where [end] is faulty, bodies cannot be judged.
+    if (end == nullptr || end->is_valid())
+        assembly.read_ends(scenario.conditions.at_end != Known::nothing, scenario.conditions.end);
     if (findings.n_errors() > 0) return;
-    parameters.warn_of_unused(findings);
-    scenario.text = with_set_values(std::move(scenario.text), parameters);
+    assembly.warn_of_unused_parameters();
+    scenario.text = with_set_values(std::move(scenario.text), assembly.top().parameters());
     scenario.conditions.start = builder.model().start();
     scenario.conditions.start.t = start_of(scenario.time);
     scenario.conditions.end.t = end_of(scenario.time);
@@ -125,11 +119,13 @@ void build(const Node& root, TreePart part, const MeshSource& meshes, const Para
     });
     // The ends of time are closed once here, for the complaint; the solution takes them from there.
     scenario.prepared = std::make_shared<Prepared>();
+    if (fits && !assembly.states_velocity()) start_as_driven(builder, scenario);
     if (fits) check_ends(builder, scenario.conditions, scenario.options.initial, *scenario.prepared);
+    scenario.resolved = resolved_run(builder, scenario);
     scenario.model = std::move(builder.model());
     scenario.outlines = std::move(builder.outlines());
     scenario.parts = std::move(builder.parts());
-    scenario.meshes = builder.meshes().kept();
+    scenario.meshes = sources.meshes.kept() + sources.texts.kept();
 }
 
 void parse(Scenario& scenario, const MeshSource& meshes, const ParameterValues& values, Findings& findings)
@@ -148,49 +144,6 @@ void parse(Scenario& scenario, const MeshSource& meshes, const ParameterValues& 
     if (!scan(text, findings)) return;
     const std::optional<Node> root = parse_toml(text, findings);
     if (root) build(*root, TreePart::whole, meshes, values, scenario, findings);
-}
-
-/// Reads a file to its end or to one byte over the limit. False after an error.
-bool read_text(const std::filesystem::path& file, std::string& text, Findings& findings)
-{
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status)) return findings.error({}, "io-not-found", "there is no such file");
-    if (std::filesystem::is_directory(status))
-        return findings.error({}, "io-directory", "this is a directory, not a file");
-    // The size is asked before anything is read, and counted again while reading, as the file may grow.
-    const bool is_regular = std::filesystem::is_regular_file(status);
-    const std::uintmax_t size = is_regular ? std::filesystem::file_size(file, error) : 0;
-    if (!error && size > max_scenario_bytes)
-        return findings.error({}, "resource-limit",
-                              "the file has " + std::to_string(size) + " bytes, more than " +
-                                  std::to_string(max_scenario_bytes));
-    errno = 0;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream.is_open() && errno == ENOMEM) throw std::bad_alloc();   // of the stream's own
-    constexpr std::size_t portion = 1u << 16;
-    while (stream && text.size() <= max_scenario_bytes) {   // pipes have no size to ask for
-        const std::size_t before = text.size();
-        text.resize(before + portion);
-        stream.read(text.data() + before, portion);
-        text.resize(before + static_cast<std::size_t>(stream.gcount()));
-    }
-    return (stream.is_open() && !stream.bad()) ||
-           findings.error({}, "io-unreadable", "the file cannot be read");
-}
-
-/// Runs `work` so that nothing is thrown, but std::bad_alloc where not even a finding has room.
-template <class Work>
-void shield(Findings& findings, Work work)
-{
-    try {
-        work();
-    } catch (const std::bad_alloc&) {
-        findings.error({}, "resource-limit", "there is not enough memory to read this scenario");
-    } catch (const std::exception& e) {
-        // Whoever embeds the reader gets findings and no exception, even of a fault of the reader itself.
-        findings.error({}, "internal", std::string("this should not happen: ") + e.what());
-    }
 }
 
 }   // namespace

@@ -25,7 +25,7 @@ Load actuator(const std::string& name, const NamedCoordinate& coordinate, const 
         for (auto& of_body : tangent.X)
             for (std::size_t c = 0; c < 2; ++c) of_body[c] *= value(arguments.at).value;
     };
-    load.readings = {{"force", coordinate.coordinate.is_angle() ? "N m" : "N",
+    load.readings = {{"effort", coordinate.coordinate.is_angle() ? "N m" : "N",
                       [value](const LoadArguments& arguments) { return value(arguments.at).value; }}};
     return load;
 }

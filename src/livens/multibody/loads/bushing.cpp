@@ -6,126 +6,17 @@
 #include <array>
 #include <cmath>
 
-#include "livens/base/elementary.h"
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/multibody/loads/load_coordinate.h"
 #include "livens/multibody/loads/load_laws.h"
 #include "livens/multibody/loads/load_values.h"
+#include "livens/multibody/loads/relative_spin.h"
+#include "livens/multibody/loads/rotation_vector.h"
 
 namespace livens {
 
 namespace {
-
-// The rotation vector is r = psi s with s = sin(angle) times the axis and c = cos(angle), all of which are
-// forms in X: psi = angle / |s| = atan2(sqrt(sigma), c) / sqrt(sigma), sigma = s . s.
-
-/// A number and its derivatives by s1, s2, s3 and c.
-struct Dual {
-    double value = 0;
-    std::array<double, 4> by{};
-
-    friend Dual operator+(Dual a, const Dual& b)
-    {
-        a.value += b.value;
-        for (std::size_t i = 0; i < 4; ++i) a.by[i] += b.by[i];
-        return a;
-    }
-    friend Dual operator*(const Dual& a, const Dual& b)
-    {
-        Dual product{a.value * b.value, {}};
-        for (std::size_t i = 0; i < 4; ++i) product.by[i] = a.value * b.by[i] + a.by[i] * b.value;
-        return product;
-    }
-};
-
-/// psi by sigma and c, to the second derivatives.
-struct Psi {
-    double value, by_sigma, by_c, by_sigma_sigma, by_sigma_c, by_c_c;
-};
-
-Psi psi(double sigma, double c)
-{
-    // 1 on the rotation group, but not between the nodes of an element.
-    const double r2 = sigma + c * c;
-    Psi p{};
-    p.by_c = -1 / r2;
-    p.by_sigma_c = 1 / (r2 * r2);
-    p.by_c_c = 2 * c / (r2 * r2);
-    // Below a hundredth ten terms of the series leave 1e-20; above, the closed forms lose few digits.
-    const double x = sigma / (c * c);
-    if (c > 0 && x < 0.01) {   // the closed forms cancel: series of atan(sqrt(x)) / sqrt(x)
-        double power = 1, sign = 1;
-        for (int k = 0; k < 10; ++k, power *= x, sign = -sign) {
-            p.value += sign * power / (2 * k + 1);
-            p.by_sigma -= sign * power * (k + 1) / (2 * k + 3);
-            p.by_sigma_sigma += sign * power * (k + 1) * (k + 2) / (2 * k + 5);
-        }
-        p.value /= c;
-        p.by_sigma /= c * c * c;
-        p.by_sigma_sigma /= c * c * c * c * c;
-        return p;
-    }
-    const double s = std::sqrt(sigma);
-    p.value = arc_tangent(s, c) / s;
-    p.by_sigma = (c / r2 - p.value) / (2 * sigma);
-    p.by_sigma_sigma = (-c / (r2 * r2) - 3 * p.by_sigma) / (2 * sigma);
-    return p;
-}
-
-}   // namespace
-
-inline namespace multibody_internal {
-
-TapeVector turn_of_sine(TapeNumber sigma, TapeNumber c)
-{
-    return {c.tape, c.tape->add({TapeKind::turn, -1, sigma.place, c.place, -1, 0})};
-}
-
-void turn_of_sine(double sigma, double c, double* both)
-{
-    const Psi p = psi(sigma, c);
-    both[0] = p.value;
-    both[1] = 2 * p.by_sigma;
-}
-
-}   // namespace multibody_internal
-
-namespace {
-
-/// r, and the matrix of its derivatives by s and c.
-struct Turn {
-    std::array<Dual, 3> r;
-    std::array<std::array<Dual, 4>, 3> J;
-};
-
-Turn turn_of(const double* q)
-{
-    const auto variable = [&](std::size_t i) {
-        Dual d{q[i], {}};
-        d.by[i] = 1;
-        return d;
-    };
-    const std::array<Dual, 4> v{variable(0), variable(1), variable(2), variable(3)};
-    const Dual sigma = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-    const Psi p = psi(sigma.value, v[3].value);
-    const auto composed = [&](double value, double by_sigma, double by_c) {
-        Dual d{value, {}};
-        for (std::size_t i = 0; i < 4; ++i) d.by[i] = by_sigma * sigma.by[i] + by_c * v[3].by[i];
-        return d;
-    };
-    const Dual of = composed(p.value, p.by_sigma, p.by_c), twice{2, {}};
-    const Dual by_sigma = composed(p.by_sigma, p.by_sigma_sigma, p.by_sigma_c);
-    const Dual by_c = composed(p.by_c, p.by_sigma_c, p.by_c_c);
-    Turn turn;
-    for (std::size_t k = 0; k < 3; ++k) {
-        turn.r[k] = of * v[k];
-        for (std::size_t l = 0; l < 3; ++l) turn.J[k][l] = twice * by_sigma * v[k] * v[l];
-        turn.J[k][k] = turn.J[k][k] + of;
-        turn.J[k][3] = by_c * v[k];
-    }
-    return turn;
-}
 
 /// Coordinates are three displacements, s1, s2, s3 and c.
 struct BushingLaw {
@@ -260,6 +151,9 @@ struct BushingLaw {
         return sum;
     }
 
+    static std::array<double, 6> u(const LawArguments& at) { return motion(at).u; }
+    double force(const LawArguments& at, int k) const { return force(motion(at), k); }
+
     double potential(const LawArguments& at) const
     {
         const Motion m = motion(at);
@@ -281,15 +175,120 @@ struct BushingLaw {
     }
 };
 
-/// What acts on u, as the law has it, and u.
-void add_readings(const BushingLaw& at, LoadParts& parts)
+/// Springs by u and dampers by (displacement', w), along displacements and R alone, of which s and c are
+/// sums: what is a factor of them is one of each R_lm by its share.
+struct SpinningBushing {
+    BushingLaw springs;
+    SpinDamping dampers;
+    static constexpr std::size_t n = 12;
+
+    /// Which coordinate of the springs coordinate j is part of, and how much of it counts.
+    struct Share {
+        std::size_t of;
+        double factor;
+    };
+    static Share share(std::size_t j)
+    {
+        if (j < 3) return {j, 1};
+        const std::size_t l = (j - 3) % 3, m = (j - 3) / 3;
+        if (l == m) return {6, 0.5};                         // c = (R_11 + R_22 + R_33 - 1) / 2
+        return {6 - l - m, (l + 1) % 3 == m ? -0.5 : 0.5};   // s_1 = (R_32 - R_23) / 2 and so on
+    }
+    /// Calls see(arguments of the springs).
+    template <class See>
+    static auto springs_see(const LawArguments& at, const See& see)
+    {
+        std::array<double, BushingLaw::n> values{}, rates{};
+        values[6] = -0.5;
+        for (std::size_t j = 0; j < n; ++j) {
+            values[share(j).of] += share(j).factor * at.values[j];
+            rates[share(j).of] += share(j).factor * at.rates[j];
+        }
+        return see(LawArguments{at.at, values, rates});
+    }
+    void operator()(const LawArguments& at, std::span<double> factors, std::span<double> slopes) const
+    {
+        constexpr std::size_t k = BushingLaw::n;
+        std::array<double, k> of_springs{};
+        std::array<double, 2 * k * k> by_springs{};
+        const bool asks = !slopes.empty();
+        dampers(at, factors, slopes);
+        springs_see(at, [&](const LawArguments& seen) {
+            springs(seen, of_springs, asks ? std::span<double>(by_springs) : std::span<double>());
+        });
+        for (std::size_t i = 0; i < n; ++i) {
+            const Share of = share(i);
+            factors[i] += of.factor * of_springs[of.of];
+            for (std::size_t j = 0; asks && j < n; ++j)
+                slopes[2 * n * i + j] +=   // springs alone do not see rates
+                    of.factor * by_springs[2 * k * of.of + share(j).of] * share(j).factor;
+        }
+    }
+    static LawOnTape springs_on(const LawOnTape& at)
+    {
+        const auto sum = [](const LawOnTape& on, const auto& part, std::size_t of, TapeNumber all) {
+            for (std::size_t j = 0; j < n; ++j)
+                if (share(j).of == of) {
+                    const TapeNumber more = share(j).factor * part(on, j);
+                    all = all.place < 0 ? more : all + more;
+                }
+            return all;
+        };
+        return {at.tape,
+                [at, sum](std::size_t of) {
+                    const TapeNumber first = of == 6 ? at.tape.number(-0.5) : TapeNumber{&at.tape};
+                    return sum(
+                        at, [](const LawOnTape& on, std::size_t j) { return on.value(j); }, of, first);
+                },
+                [at, sum](std::size_t of) {
+                    const TapeNumber none{&at.tape};
+                    return sum(
+                        at, [](const LawOnTape& on, std::size_t j) { return on.rate(j); }, of, none);
+                }};
+    }
+    void record(const LawOnTape& at, std::span<TapeNumber> factors) const
+    {
+        std::vector<TapeNumber> of_springs(BushingLaw::n, TapeNumber{&at.tape});
+        springs.record(springs_on(at), of_springs);
+        dampers.record(at, factors);
+        for (std::size_t j = 0; j < n; ++j)
+            factors[j] = factors[j] + share(j).factor * of_springs[share(j).of];
+    }
+    std::array<double, 6> u(const LawArguments& at) const
+    {
+        return springs_see(at, [&](const LawArguments& q) { return springs.u(q); });
+    }
+    double force(const LawArguments& at, int k) const
+    {
+        return springs_see(at, [&](const LawArguments& q) { return springs.force(q, k); }) +
+               dampers.force(at)[k];
+    }
+    double potential(const LawArguments& at) const
+    {
+        return springs_see(at, [&](const LawArguments& q) { return springs.potential(q); });
+    }
+    double power(const LawArguments& at) const { return dampers.power(at); }
+    TapeNumber recorded_power(const LawOnTape& at) const { return dampers.recorded_power(at); }
+};
+
+/// What the parts of the load are made of.
+template <class Law>
+void add_law(LoadParts& parts, const Law& law)
 {
+    parts.law = law;
+    parts.recorded_law = [law](const LawOnTape& on, std::span<TapeNumber> factors) {
+        law.record(on, factors);
+    };
+    parts.potential = [law](const LawArguments& q) { return law.potential(q); };
+    parts.power = [law](const LawArguments& q) { return law.power(q); };
+    parts.recorded_power = [law](const LawOnTape& on) { return law.recorded_power(on); };
+    // What acts on u, as the law has it, and u.
     for (int k = 0; k < 6; ++k) {
         const std::string letter(1, "xyz"[k % 3]);
         parts.readings.push_back({(k < 3 ? "force_" : "torque_") + letter, k < 3 ? "N" : "N m",
-                                  [at, k](const LawArguments& q) { return at.force(at.motion(q), k); }});
+                                  [law, k](const LawArguments& q) { return law.force(q, k); }});
         parts.readings.push_back({(k < 3 ? "displacement_" : "rotation_") + letter, k < 3 ? "m" : "rad",
-                                  [at, k](const LawArguments& q) { return at.motion(q).u[k]; }});
+                                  [law, k](const LawArguments& q) { return law.u(q)[k]; }});
     }
 }
 
@@ -324,14 +323,10 @@ void check_matrix(const std::string& name, const Matrix<6, 6>& A, const std::str
     if (is_negative(A)) refuse("is negative for some displacement", "");
 }
 
-}   // namespace
-
-Load bushing(const std::string& name, int first, const BodyFrame& frame_first, int second,
-             const BodyFrame& frame_second, const Bushing& law, const Configurations& X)
+/// s1, s2, s3 and c of two triads.
+std::vector<PairForm> sine_and_cosine_forms(int first, const BodyFrame& frame_first, int second,
+                                            const BodyFrame& frame_second)
 {
-    check_matrix(name, law.stiffness, "stiffness");
-    check_matrix(name, law.damping, "damping");
-    if (first == second) start_load(name, "bushing", {first, second});   // says why not
     const auto axis = [](const BodyFrame& frame, int k) { return direction(frame.axes.column(k)); };
     const auto product = [&](int k, int l) {   // a_k . b_l
         return inner_product_row(first, axis(frame_first, k), second, axis(frame_second, l), 0, 1);
@@ -344,41 +339,53 @@ Load bushing(const std::string& name, int first, const BodyFrame& frame_first, i
         form.c += factor * b.c;
         return form;
     };
-    const auto scaled = [](PairForm form, double factor, double more) {
-        form.c_ij *= factor;
-        form.b_i *= factor;
-        form.b_j *= factor;
-        form.c = factor * form.c + more;
+    const auto halved = [](PairForm form, double more) {
+        form.c_ij *= 0.5;
+        form.b_i *= 0.5;
+        form.b_j *= 0.5;
+        form.c = 0.5 * form.c + more;
         return form;
     };
-    LoadParts parts;
-    const auto add = [&](const PairForm& form) { parts.coordinates.push_back({{{form}}, 0}); };
-    for (int k = 0; k < 3; ++k)
-        add(plane_row(first, axis(frame_first, k), point(frame_first.point), second,
-                      point(frame_second.point), 0, 1));
+    std::vector<PairForm> forms;
     for (int k = 0; k < 3; ++k) {
         const int l = (k + 1) % 3, m = (k + 2) % 3;
-        add(scaled(sum(product(m, l), -1, product(l, m)), 0.5, 0));
+        forms.push_back(halved(sum(product(m, l), -1, product(l, m)), 0));
     }
     ConstraintRow trace = product(0, 0);
     // c = (a1.b1 + a2.b2 + a3.b3 - 1) / 2, the cosine of the turn between both triads.
     static_cast<PairForm&>(trace) = sum(trace, 1, product(1, 1));
-    add(scaled(sum(trace, 1, product(2, 2)), 0.5, -0.5));
-    for (LawCoordinate& q : parts.coordinates) {
-        // The law takes the values of the forms, not their changes since the start.
-        q.at_stated =
-            form_value(q.coordinate.forms[0], q.coordinate.forms[0].body_i, q.coordinate.forms[0].body_j, X);
-        parts.units.push_back(unit_along(name, q.coordinate, X));
-    }
-    const BushingLaw at{law};
-    parts.law = at;
-    parts.recorded_law = [at](const LawOnTape& on, std::span<TapeNumber> factors) { at.record(on, factors); };
+    forms.push_back(halved(sum(trace, 1, product(2, 2)), -0.5));
+    return forms;
+}
+
+}   // namespace
+
+Load bushing(const std::string& name, int first, const BodyFrame& frame_first, int second,
+             const BodyFrame& frame_second, const Bushing& law, const Configurations& X)
+{
+    check_matrix(name, law.stiffness, "stiffness");
+    check_matrix(name, law.damping, "damping");
+    if (first == second) start_load(name, "bushing", {first, second});   // says why not
+    LoadParts parts;
+    // The law takes the values of the forms, not their changes since the start.
+    const auto add = [&](const PairForm& form) {
+        parts.coordinates.push_back({{{form}}, form_value(form, form.body_i, form.body_j, X)});
+    };
+    for (int k = 0; k < 3; ++k)
+        add(plane_row(first, direction(frame_first.axes.column(k)), point(frame_first.point), second,
+                      point(frame_second.point), 0, 1));
     parts.is_smooth = true;   // up to half a turn, where it ends
-    parts.depends_on_rates = at.of_rates();
-    parts.potential = [at](const LawArguments& q) { return at.potential(q); };
-    parts.power = [at](const LawArguments& q) { return at.power(q); };
-    parts.recorded_power = [at](const LawOnTape& on) { return at.recorded_power(on); };
-    add_readings(at, parts);
+    parts.depends_on_rates = BushingLaw{law}.of_rates();
+    if (law.by_angular_velocity) {
+        for (const LawCoordinate& q : turned_axes(first, frame_first.axes, second, frame_second.axes, X))
+            parts.coordinates.push_back(q);
+        add_law(parts, SpinningBushing{{{law.stiffness, {}, law.preload}}, {law.damping, true}});
+    } else {
+        for (const PairForm& form : sine_and_cosine_forms(first, frame_first, second, frame_second))
+            add(form);
+        add_law(parts, BushingLaw{law});
+    }
+    for (const LawCoordinate& q : parts.coordinates) parts.units.push_back(unit_along(name, q.coordinate, X));
     return modulated(name, "bushing", parts, X);
 }
 

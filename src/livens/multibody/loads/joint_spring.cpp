@@ -1,16 +1,90 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Spring, damper and preload along a coordinate of a joint: theory.md, "Coordinates of joints", Loads along
 // coordinates. Angles are unwrapped where the force depends on them.
+#include <algorithm>
+#include <cmath>
+
+#include "livens/base/error.h"
+#include "livens/base/text.h"
 #include "livens/multibody/loads/load_coordinate.h"
+#include "livens/multibody/loads/load_laws.h"
 #include "livens/multibody/loads/load_values.h"
 
 namespace livens {
 
 namespace {
 
+/// The spring at one limit. With s, how far q is beyond it, the force back is stiffness times the positive
+/// part of g = s + max(s, 0) damping s', which is the guard: it passes zero where the spring begins to act,
+/// and where it would begin to pull.
+struct AtLimit {
+    double limit, outwards;   ///< 1 at the upper one, -1 at the lower one
+    double stiffness, damping;
+
+    double beyond(double q) const { return outwards * (q - limit); }
+    double guard(const CoordinateState& q) const
+    {
+        const double s = beyond(q.value);
+        return s + std::max(s, 0.0) * damping * outwards * q.rate;
+    }
+    /// Adds to a force along q.
+    void add(const CoordinateState& q, LawValue& Q) const
+    {
+        const double s = beyond(q.value), g = guard(q);
+        if (s <= 0 || g <= 0) return;
+        Q.force -= outwards * stiffness * g;
+        Q.by_value -= stiffness * (1 + damping * outwards * q.rate);
+        Q.by_rate -= stiffness * s * damping;
+    }
+    double potential(double q) const
+    {
+        const double s = std::max(beyond(q), 0.0);
+        return 0.5 * stiffness * s * s;
+    }
+    /// Of what is not the spring: the force less stiffness s back, times the rate.
+    double power(const CoordinateState& q) const
+    {
+        const double s = std::max(beyond(q.value), 0.0);
+        return -stiffness * (std::max(guard(q), 0.0) - s) * outwards * q.rate;
+    }
+
+    TapeNumber positive(TapeNumber a) const { return made(TapeKind::greatest, a, a.tape->number(0).place); }
+    TapeNumber recorded_beyond(TapeNumber q) const { return outwards > 0 ? q - limit : limit + -q; }
+    TapeNumber recorded_guard(TapeNumber q, TapeNumber rate) const
+    {
+        const TapeNumber s = recorded_beyond(q);
+        return damping > 0 ? s + outwards * damping * (positive(s) * rate) : s;
+    }
+    TapeNumber recorded_force(TapeNumber q, TapeNumber rate) const
+    {
+        const TapeNumber g = recorded_guard(q, rate);
+        q.tape->watch_guard(g);
+        return -outwards * stiffness * positive(g);
+    }
+    TapeNumber recorded_power(TapeNumber q, TapeNumber rate) const
+    {
+        const TapeNumber more = positive(recorded_guard(q, rate)) - positive(recorded_beyond(q));
+        return -outwards * stiffness * (more * rate);
+    }
+};
+
+/// A joint that stands at a limit is not beyond it by what rounding makes of it: springs begin this far out.
+double rounding_at(double limit) { return 1e-12 * std::max(1.0, std::abs(limit)); }
+
+std::vector<AtLimit> springs_at(const JointLimits& limits)
+{
+    std::vector<AtLimit> all;
+    if (limits.stiffness > 0 && std::isfinite(limits.low))
+        all.push_back({limits.low - rounding_at(limits.low), -1, limits.stiffness, limits.damping});
+    if (limits.stiffness > 0 && std::isfinite(limits.high))
+        all.push_back({limits.high + rounding_at(limits.high), 1, limits.stiffness, limits.damping});
+    return all;
+}
+
 struct AlongJoint {
     LoadCoordinate along;
     JointSpring spring;
+    std::vector<AtLimit> limits;
 
     SpringValue elastic(double value) const
     {
@@ -21,10 +95,14 @@ struct AlongJoint {
     bool is_elastic() const { return spring.law || spring.stiffness != 0; }
     LawValue force(const CoordinateState& q) const
     {
-        const double drag = spring.damping * q.rate + spring.preload;
-        if (!is_elastic()) return {-drag, 0, -spring.damping};   // also where turns are not known
-        const SpringValue value = elastic(q.value);
-        return {-value.force - drag, -value.stiffness, -spring.damping};
+        LawValue Q{-spring.damping * q.rate - spring.preload, 0, -spring.damping};
+        if (is_elastic()) {   // else the value does not count, which may be no number
+            const SpringValue value = elastic(q.value);
+            Q.force = -value.force + Q.force;
+            Q.by_value = -value.stiffness;
+        }
+        for (const AtLimit& limit : limits) limit.add(q, Q);
+        return Q;
     }
     void record(LoadTape& tape, TapeNumber factor) const
     {
@@ -36,6 +114,7 @@ struct AlongJoint {
             if (spring.law && !spring.law.bends.empty()) tape.watch_guard(e);
             add(spring.law ? -recorded(spring.law, e) : -spring.stiffness * e);
         }
+        for (const AtLimit& limit : limits) add(limit.recorded_force(along.value(tape), along.rate(tape)));
         if (Q.place < 0)
             Q = tape.number(-spring.preload);
         else
@@ -44,34 +123,82 @@ struct AlongJoint {
     }
     double potential(const CoordinateState& q) const
     {
-        return (is_elastic() ? elastic(q.value).energy : 0) +
-               (spring.preload == 0 ? 0 : spring.preload * (q.value - spring.rest));
+        double energy = (is_elastic() ? elastic(q.value).energy : 0) +
+                        (spring.preload == 0 ? 0 : spring.preload * (q.value - spring.rest));
+        for (const AtLimit& limit : limits) energy += limit.potential(q.value);
+        return energy;
     }
-    double power(const CoordinateState& q) const { return -spring.damping * q.rate * q.rate; }
+    double power(const CoordinateState& q) const
+    {
+        double sum = -spring.damping * q.rate * q.rate;
+        for (const AtLimit& limit : limits) sum += limit.power(q);
+        return sum;
+    }
     TapeNumber recorded_power(LoadTape& tape) const
     {
-        if (spring.damping == 0) return tape.number(0);
+        TapeNumber sum{&tape};
         const TapeNumber rate = along.rate(tape);
-        return -spring.damping * (rate * rate);
+        const auto add = [&](TapeNumber more) { sum = sum.place < 0 ? more : sum + more; };
+        if (spring.damping > 0) add(-spring.damping * (rate * rate));
+        for (const AtLimit& limit : limits) add(limit.recorded_power(along.value(tape), rate));
+        return sum.place < 0 ? tape.number(0) : sum;
+    }
+    /// What decides on which piece the force is: where the law of the spring bends, then the limits.
+    std::vector<Guard> guards() const
+    {
+        std::vector<Guard> all;
+        if (!spring.law.bends.empty()) all.push_back({spring.law.bends});
+        for (std::size_t i = 0; i < limits.size(); ++i) all.emplace_back();
+        return all;
+    }
+    void guarded(const CoordinateState& q, std::span<double> numbers) const
+    {
+        std::size_t n = 0;
+        if (!spring.law.bends.empty()) numbers[n++] = q.value - spring.rest;
+        for (const AtLimit& limit : limits) numbers[n++] = limit.guard(q);
+    }
+    /// How far the coordinate is beyond its limits.
+    double penetration(const CoordinateState& q) const
+    {
+        double most = 0;
+        for (const AtLimit& limit : limits) most = std::max(most, limit.beyond(q.value));
+        return most;
     }
 };
+
+void check_joint_spring(const Load& load, const JointSpring& spring, const JointLimits& limits)
+{
+    check_not_negative(load, spring.stiffness, "stiffness");
+    check_not_negative(load, spring.damping, "damping");
+    check_not_negative(load, limits.stiffness, "limit_stiffness");
+    check_not_negative(load, limits.damping, "limit_damping");
+    check_load_vector(load, {spring.rest, spring.preload, 0}, "rest and preload");
+    if (!(limits.low < limits.high))
+        throw InputError({"joint-limits", "load[" + load.name + "].limits", "limits are not in order",
+                          to_text(limits.low) + ", " + to_text(limits.high),
+                          "the lower one first, then the upper one", "", ""});
+}
 
 }   // namespace
 
 Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, const JointSpring& spring,
                   const Configurations& X)
 {
+    return joint_spring(name, coordinate, spring, {}, X);
+}
+
+Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, const JointSpring& spring,
+                  const JointLimits& limits, const Configurations& X)
+{
     const bool is_angle = coordinate.coordinate.is_angle();
-    AlongJoint of{LoadCoordinate(coordinate.coordinate, coordinate.at_stated, X), spring};
+    AlongJoint of{LoadCoordinate(coordinate.coordinate, coordinate.at_stated, X), spring, springs_at(limits)};
     Load load = start_load(name, "joint_spring", of.along.bodies());
-    check_not_negative(load, spring.stiffness, "stiffness");
-    check_not_negative(load, spring.damping, "damping");
-    check_load_vector(load, {spring.rest, spring.preload, 0}, "rest and preload");
+    check_joint_spring(load, spring, limits);
     load.depends_on_X = true;
-    load.depends_on_V = spring.damping > 0;
+    load.depends_on_V = spring.damping > 0 || (limits.acts() && limits.damping > 0);
     load.needs_directors = of.along.needs_directors();
     // A damper alone does not read the angle, so it works in families that do not count turns.
-    const bool counts_turns = is_angle && (of.is_elastic() || spring.preload != 0);
+    const bool counts_turns = is_angle && (of.is_elastic() || spring.preload != 0 || !of.limits.empty());
     of.along.place(load, counts_turns);
     if (counts_turns)
         load.domain =
@@ -90,18 +217,23 @@ Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, co
         of.along.add_products(arguments, Q.by_value, Q.by_rate, found);
         return std::vector{std::move(found)};
     };
-    if (!spring.law.bends.empty()) {
-        load.guards = {{spring.law.bends}};
-        load.guarded = [of](const LoadArguments& arguments, std::span<double> e) {
-            e[0] = of.along.look(arguments).value - of.spring.rest;
+    load.guards = of.guards();
+    if (!load.guards.empty())
+        load.guarded = [of](const LoadArguments& arguments, std::span<double> numbers) {
+            of.guarded(of.along.look(arguments), numbers);
         };
-    }
     load.potential = [of](const LoadArguments& arguments) { return of.potential(of.along.look(arguments)); };
     load.power = [of](const LoadArguments& arguments) { return of.power(of.along.look(arguments)); };
     load.recorded_power = [of](LoadTape& tape) { return of.recorded_power(tape); };
-    load.readings = {{"force", is_angle ? "N m" : "N", [of](const LoadArguments& arguments) {
-                          return of.force(of.along.look(arguments)).force;
+    load.readings = {{"effort", is_angle ? "N m" : "N", [of](const LoadArguments& arguments) {
+                          return of.force(of.along.look(arguments)).force + 0.0;   // no -0
                       }}};
+    if (of.limits.empty()) return load;
+    load.readings.push_back({"penetration", is_angle ? "rad" : "m", [of](const LoadArguments& arguments) {
+                                 return of.penetration(of.along.look(arguments));
+                             }});
+    load.readings.push_back({"limit_stiffness", is_angle ? "N m/rad" : "N/m",
+                             [stiffness = limits.stiffness](const LoadArguments&) { return stiffness; }});
     return load;
 }
 

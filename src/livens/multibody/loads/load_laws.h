@@ -2,7 +2,9 @@
 // Loads whose size is a law of coordinates and their rates, also of bodies on which they do not act.
 #pragma once
 
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -77,12 +79,26 @@ struct LoadParts {
     LawGuards guards{};
     /// The law is linear, or as smooth as the motion for other reasons; see Load::is_smooth.
     bool is_smooth = false;
-    LawSteepness steepest = nullptr;   ///< if not
+    LawSteepness steepest = nullptr;     ///< if not
     bool is_smooth_off_centre = false;   ///< but for where guards.centre is zero; see LawInside
     std::vector<double> breaks{};
     std::string domain{};
     std::vector<LawReading> readings{};
 };
+
+/// Where a joint ends, softly: one-sided springs that act where a coordinate q is beyond a limit, by d: the
+/// force back is stiffness d (1 + damping d'), and none where that would pull [HuntCrossley1975].
+struct JointLimits {
+    double low = -std::numeric_limits<double>::infinity();   ///< m or rad
+    double high = std::numeric_limits<double>::infinity();   ///< above `low`
+    double stiffness = 0;                                    ///< N/m or N m/rad
+    double damping = 0;                                      ///< s/m or s/rad
+
+    bool acts() const { return stiffness > 0 && (std::isfinite(low) || std::isfinite(high)); }
+};
+/// joint_spring() with limits beside it. Throws InputError `joint-limits` for limits that are not in order.
+Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, const JointSpring& spring,
+                  const JointLimits& limits, const Configurations& X);
 
 /// Reports factor k of a law.
 LawReading factor_reading(const std::string& name, const std::string& unit, const LoadLaw& law, std::size_t k,
@@ -107,14 +123,22 @@ struct Bushing {
     Matrix<6, 6> stiffness{};   ///< N/m, N m/rad and mixed; symmetric and not negative
     Matrix<6, 6> damping{};     ///< the same by u'
     Matrix<6, 1> preload{};     ///< N, N m: against u, wherever it is
+    /// damping is by the relative angular velocity instead of the rate of the rotation vector.
+    bool by_angular_velocity = false;
 };
 
 /// An elastic bearing between two frames: u holds the displacement of the second frame's point in axes of the
 /// first, and the rotation vector from the first frame to the second in these axes. It does the work
 /// -(K u + C u' + preload) . du, so that K and preload have a potential however far it turns, up to 175
-/// degrees. Throws InputError (`bushing-matrix`) for matrices that are not symmetric or negative.
+/// degrees; or, by angular velocity w in axes of the first frame, C (displacement', w) acts on these. Throws
+/// InputError (`bushing-matrix`) for matrices that are not symmetric or negative.
 Load bushing(const std::string& name, int first, const BodyFrame& frame_first, int second,
              const BodyFrame& frame_second, const Bushing& law, const Configurations& X);
+
+/// A damper between two bodies by their relative angular velocity: a torque -damping (w2 - w1) on the second,
+/// and the opposite one on the first, however far they turn. Throws InputError (`load-negative`).
+Load rotational_damper(const std::string& name, int first, int second, double damping,
+                       const Configurations& X);
 
 struct Drag {
     double linear = 0;      ///< N s/m

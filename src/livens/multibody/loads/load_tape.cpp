@@ -36,8 +36,7 @@ int TapeStep::size() const
 
 void LoadTape::begin(const Load& load, int first_angle)
 {
-    bodies_ = load.bodies;
-    first_angle_ = first_angle;
+    load_ = {load.bodies, first_angle};
     watched_.emplace_back();
 }
 
@@ -107,7 +106,7 @@ TapeVector LoadTape::at_instant(OfTime value)
 
 int LoadTape::find_arm(int side, const Vector4& w)
 {
-    const int body = bodies_[static_cast<std::size_t>(side)];
+    const int body = load_.bodies[static_cast<std::size_t>(side)];
     const int index = static_cast<int>(arms_.size());
     const auto [at, is_new] = arm_at_.try_emplace({1.0 * body, w[0], w[1], w[2], w[3]}, index);
     if (is_new) arms_.push_back({body, w});
@@ -116,14 +115,41 @@ int LoadTape::find_arm(int side, const Vector4& w)
 
 TapeVector LoadTape::arm(int side, const Vector4& w, bool is_rate)
 {
-    if (bodies_[static_cast<std::size_t>(side)] == world)
+    if (load_.bodies[static_cast<std::size_t>(side)] == world)
         return vector(is_rate ? Vector3{} : world_configuration * w);
-    return {this, add({is_rate ? TapeKind::arm_rate : TapeKind::arm, -1, -1, -1, find_arm(side, w), 0})};
+    const TapeVector v{this,
+                       add({is_rate ? TapeKind::arm_rate : TapeKind::arm, -1, -1, -1, find_arm(side, w), 0})};
+    return load_.frame.is_none() ? v : as_before(v, is_rate ? 0 : w[0]);
+}
+
+MovedLoad::MovedLoad(LoadTape& tape, const Displacement& by) : tape_(tape), before_(tape.load_.frame)
+{
+    tape.load_.frame = before_.after(by);
+}
+
+/// R^T (v - shift p): the columns of R are what its components are along.
+TapeVector LoadTape::as_before(TapeVector v, double shift)
+{
+    v = v - vector(shift * load_.frame.position);
+    const auto along = [&](int i) {
+        Vector3 axis{};
+        axis[i] = 1;
+        return dot(vector(load_.frame.rotation.column(i)), v) * vector(axis);
+    };
+    return along(0) + along(1) + along(2);
+}
+
+/// R v.
+TapeVector LoadTape::turned(TapeVector v)
+{
+    if (const Vector3* known = constant(v)) return vector(load_.frame.rotation * *known);
+    const auto along = [&](int i) { return v[i] * vector(load_.frame.rotation.column(i)); };
+    return along(0) + along(1) + along(2);
 }
 
 TapeNumber LoadTape::unwrapped(TapeNumber value, int angle)
 {
-    return {this, add({TapeKind::unwrapped, -1, value.place, -1, first_angle_ + angle, 0})};
+    return {this, add({TapeKind::unwrapped, -1, value.place, -1, load_.first_angle + angle, 0})};
 }
 
 TapeVector LoadTape::outer(Outer call, const std::vector<TapeNumber>& of, int n)
@@ -136,8 +162,9 @@ TapeVector LoadTape::outer(Outer call, const std::vector<TapeNumber>& of, int n)
 
 void LoadTape::pull(int side, const Vector4& w, TapeNumber s, TapeVector v)
 {
-    if (bodies_[static_cast<std::size_t>(side)] == world) return;
+    if (load_.bodies[static_cast<std::size_t>(side)] == world) return;
     if (s.place < 0) s = number(1);
+    if (!load_.frame.is_none()) v = turned(v);
     add({TapeKind::pull, -1, s.place, v.place, find_arm(side, w), 0});
 }
 

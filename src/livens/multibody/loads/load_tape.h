@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "livens/multibody/displacement.h"
 #include "livens/multibody/loads.h"
 
 namespace livens::inline multibody_internal {
@@ -90,6 +91,13 @@ struct TapeWatch {
     std::vector<int> asked;
 };
 
+/// The load that is being recorded.
+struct TapedLoad {
+    std::vector<int> bodies{};
+    int first_angle = 0;
+    Displacement frame{};   ///< by which it was moved since it was stated
+};
+
 /// What is recorded twice is evaluated once. Forces leave by pull(): F of a body is the sum of s v w^T over
 /// material vectors X w, its arms.
 class LoadTape {   // named in a public header: what it does is still no library's
@@ -149,6 +157,8 @@ public:
 
 private:
     [[gnu::visibility("hidden")]] int find_arm(int side, const Vector4& w);
+    [[gnu::visibility("hidden")]] TapeVector as_before(TapeVector v, double shift);
+    [[gnu::visibility("hidden")]] TapeVector turned(TapeVector v);
 
     std::vector<TapeStep> steps_;
     std::map<std::tuple<TapeKind, int, int, int, double>, int> known_;   ///< places
@@ -161,9 +171,25 @@ private:
     std::vector<Outer> calls_;
     std::vector<std::vector<int>> inputs_;
     std::vector<TapeWatch> watched_;
-    std::vector<int> bodies_;   ///< of the load at hand
-    int first_angle_ = 0, size_ = 0;
+    TapedLoad load_;
+    int size_ = 0;
     bool takes_looks_ = false;
+
+    friend class MovedLoad;
+};
+
+/// As long as it lives, what is recorded is of a load that was displaced: arms are seen as they were before,
+/// and what is pulled is turned.
+class MovedLoad {
+public:
+    MovedLoad(LoadTape& tape, const Displacement& by);
+    ~MovedLoad() { tape_.load_.frame = before_; }
+    MovedLoad(const MovedLoad&) = delete;
+    MovedLoad& operator=(const MovedLoad&) = delete;
+
+private:
+    LoadTape& tape_;
+    Displacement before_;
 };
 
 inline TapeNumber made(TapeKind kind, TapeNumber a, int b = -1, double number = 0)

@@ -337,12 +337,15 @@ Placement read_placement(const Section& body, const Matrix3& stretch)
     return placement;
 }
 
-void read_bodies(Builder& builder)
+bool has_surface_loads(const Section& top)
+{
+    return std::ranges::any_of(top.sections("load"),
+                               [](const Section& load) { return load.takes("surface"); });
+}
+
+void read_bodies(Builder& builder, bool with_surfaces)
 {
     std::unordered_set<std::string> taken;
-    // Moments of surfaces cost a quadrature, which no scenario pays whose loads do not name a surface.
-    const bool with_surfaces = std::ranges::any_of(builder.top().sections("load"),
-                                                   [](const Section& load) { return load.takes("surface"); });
     for (const Section& section : builder.top().sections("body")) {
         const bool is_good = check_body(section, builder.findings());
         const Value* named = section.find("name");
@@ -364,7 +367,10 @@ void read_bodies(Builder& builder)
             builder.surfaces().push_back(surfaces_in_body(section, shape));
         });
     }
-    builder.close_bodies();
+}
+
+void read_world(Builder& builder)
+{
     Outline world;
     if (const Section* ground = only_section(builder.top(), "world");
         ground != nullptr && check_look(*ground))

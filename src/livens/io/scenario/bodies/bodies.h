@@ -20,7 +20,11 @@ bool check_pose(const Section& body);
 /// `stretch`: of a body whose orientation may be told by others than its directors.
 Placement read_placement(const Section& body, const Matrix3& stretch = identity<3>());
 
+/// Whether loads ask for surfaces of bodies, whose moments cost a quadrature.
+bool has_surface_loads(const Section& top);
 /// Reports all it finds.
-void read_bodies(Builder& builder);
+void read_bodies(Builder& builder, bool with_surfaces);
+/// What is drawn of the world, behind the outlines of all bodies.
+void read_world(Builder& builder);
 
 }   // namespace livens::inline io_internal

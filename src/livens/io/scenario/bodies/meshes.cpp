@@ -22,10 +22,12 @@ namespace livens::inline io_internal {
 
 namespace {
 
-[[noreturn]] void refuse(const char* code, const std::string& path, const std::string& why,
-                         const char* help = "")
+[[noreturn]] void refuse(const std::string& code, const std::string& path, const std::string& why,
+                         const std::string& help = "")
 {
-    throw InputError({code, "", "the mesh '" + path + "' " + why, "", "", "", help});
+    const std::string what = code.substr(0, code.find('-'));
+    throw InputError({code, "", "the " + (what == "include" ? "file" : what) + " '" + path + "' " + why, "",
+                      "", "", help});
 }
 
 /// The surface of a mesh about a point; quadrilaterals as two triangles, curved faces by their corners.
@@ -83,29 +85,11 @@ public:
         return true;
     }
     /// A name, as in_line() wrote it.
-    std::string rest() const
-    {
-        std::string name;
-        for (std::size_t i = 0; i < text_.size(); ++i) {
-            const char next = text_[i] == '\\' && i + 1 < text_.size() ? text_[i + 1] : ' ';
-            const bool is_escaped = next == 'n' || next == '\\';
-            name += !is_escaped ? text_[i] : next == 'n' ? '\n' : '\\';
-            i += is_escaped ? 1 : 0;
-        }
-        return name;
-    }
+    std::string rest() const { return out_of_line(text_); }
 
 private:
     std::string_view text_;
 };
-
-/// Names and densities end their lines, and may have breaks of lines in them.
-std::string in_line(const std::string& name)
-{
-    std::string text;
-    for (const char c : name) text += c == '\n' ? "\\n" : c == '\\' ? "\\\\" : std::string(1, c);
-    return text + "\n";
-}
 
 template <int R, int C>
 std::string numbers_of(const Matrix<R, C>& m)
@@ -196,6 +180,26 @@ bool is_inside(const std::filesystem::path& file, const std::filesystem::path& f
 
 }   // namespace
 
+/// Names and densities end their lines, and may have breaks of lines in them.
+std::string in_line(const std::string& text)
+{
+    std::string line;
+    for (const char c : text) line += c == '\n' ? "\\n" : c == '\\' ? "\\\\" : std::string(1, c);
+    return line + "\n";
+}
+
+std::string out_of_line(std::string_view line)
+{
+    std::string text;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const char next = line[i] == '\\' && i + 1 < line.size() ? line[i + 1] : ' ';
+        const bool is_escaped = next == 'n' || next == '\\';
+        text += !is_escaped ? line[i] : next == 'n' ? '\n' : '\\';
+        i += is_escaped ? 1 : 0;
+    }
+    return text;
+}
+
 ReducedMesh reduced(const Mesh& mesh)
 {
     ReducedMesh r;
@@ -220,7 +224,8 @@ MeshStore::MeshStore(MeshSource source) : source_(std::move(source))
     ReducedMesh* mesh = nullptr;
     for (std::string_view text = source_.kept; !text.empty();) {
         const std::size_t end = std::min(text.find('\n'), text.size());
-        if (!read_line(text.substr(0, end), kept_, kept_seen_, mesh)) {
+        const bool is_of_include = text.starts_with("include ") || text.starts_with("content ");
+        if (!is_of_include && !read_line(text.substr(0, end), kept_, kept_seen_, mesh)) {
             kept_.clear();   // damaged: nothing of it can be trusted
             kept_seen_.clear();
             return;
@@ -229,8 +234,9 @@ MeshStore::MeshStore(MeshSource source) : source_(std::move(source))
     }
 }
 
-ReducedMesh& MeshStore::entry(const std::string& path, bool is_turned)
+ReducedMesh& MeshStore::entry(const std::string& own_path, bool is_turned)
 {
+    const std::string path = folder_ + own_path;
     const auto known = known_.find({path, is_turned});
     if (known != known_.end()) return known->second;
     // What the run has kept wins over the file, which may have changed since.
@@ -247,12 +253,14 @@ const Moments& MeshStore::weighted(const std::string& path, bool is_turned, doub
     std::map<std::pair<double, std::string>, Moments>& weighted = entry(path, is_turned).weighted;
     const auto known = weighted.find({unit, density});
     if (known != weighted.end()) return known->second;
-    return weighted.emplace(std::pair(unit, density), weighted_by_field(read(path, is_turned), unit, density))
+    return weighted
+        .emplace(std::pair(unit, density), weighted_by_field(read(folder_ + path, is_turned), unit, density))
         .first->second;
 }
 
-const Surface& MeshStore::picture(const std::string& path)
+const Surface& MeshStore::picture(const std::string& own_path)
 {
+    const std::string path = folder_ + own_path;
     const auto known = seen_.find(path);
     if (known != seen_.end()) return known->second.picture;
     ReducedMesh seen;
@@ -274,26 +282,34 @@ Mesh MeshStore::read(const std::string& path, bool is_turned)
     return mesh;
 }
 
-Mesh MeshStore::open(const std::string& path)
+std::filesystem::path find_file(const MeshSource& source, const std::string& path, const std::string& what)
 {
     namespace fs = std::filesystem;
+    const std::string wrong_path = what + "-path", wrong_file = what + "-file";
     const fs::path relative(path);
     if (path.empty() || relative.is_absolute())
-        refuse("mesh-path", path, "must be a path from the scenario's folder on");
+        refuse(wrong_path, path, "must be a path from the scenario's folder on");
     if (const std::string culprit = first_invisible(path); !culprit.empty())
-        refuse("mesh-path", path, "must not contain " + culprit, "give the file a name without it");
+        refuse(wrong_path, path, "must not contain " + culprit, "give the file a name without it");
     for (const fs::path& part : relative)
         // Refused by its letters, before anything is asked of the file system.
         if (part == "..")
-            refuse("mesh-path", path, "leaves the scenario's folder", "put the mesh beside the scenario");
-    if (!source_.folder) refuse("mesh-file", path, "cannot be read: this scenario has no folder");
+            refuse(wrong_path, path, "leaves the scenario's folder",
+                   what == "mesh" ? "put the mesh beside the scenario" : "put it beside the scenario");
+    if (!source.folder) refuse(wrong_file, path, "cannot be read: this scenario has no folder");
     std::error_code error;
     const fs::path folder =
-        fs::weakly_canonical(source_.folder->empty() ? fs::path(".") : *source_.folder, error);
+        fs::weakly_canonical(source.folder->empty() ? fs::path(".") : *source.folder, error);
     // Links are followed before the comparison; a link inside of the folder may point out of it.
     const fs::path file = error ? fs::path() : fs::weakly_canonical(folder / relative, error);
-    if (error) refuse("mesh-file", path, "cannot be read: " + error.message());
-    if (!is_inside(file, folder)) refuse("mesh-path", path, "leaves the scenario's folder by a link");
+    if (error) refuse(wrong_file, path, "cannot be read: " + error.message());
+    if (!is_inside(file, folder)) refuse(wrong_path, path, "leaves the scenario's folder by a link");
+    return file;
+}
+
+Mesh MeshStore::open(const std::string& path)
+{
+    const std::filesystem::path file = find_file(source_, path, "mesh");
     files_.push_back(file);
     return read_mesh_file(file, path);
 }

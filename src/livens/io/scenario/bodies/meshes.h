@@ -29,9 +29,19 @@ inline constexpr std::size_t most_shown = 10'000;
 /// What is left of a sound mesh.
 ReducedMesh reduced(const Mesh& mesh);
 
+/// A text as one line, and back.
+std::string in_line(const std::string& text);
+std::string out_of_line(std::string_view text);
+/// The file of a path from the scenario's folder on. `what`: "mesh", which begins the codes that are thrown:
+/// `mesh-path`, `mesh-file`.
+std::filesystem::path find_file(const MeshSource& source, const std::string& path, const std::string& what);
+
 class MeshStore {
 public:
     explicit MeshStore(MeshSource source);
+
+    /// Paths are those of a file in this folder from now on: "" or "parts/".
+    void enter(const std::string& folder) { folder_ = folder; }
 
     /// Of a path as the scenario has it; with `is_turned` what faces inwards is turned. Throws InputError:
     /// `mesh-path`, `mesh-file`, and what the mesh is refused for.
@@ -57,6 +67,7 @@ private:
     ReducedMesh& entry(const std::string& path, bool is_turned);
 
     MeshSource source_;
+    std::string folder_;
     std::map<Key, ReducedMesh> known_;
     std::map<Key, ReducedMesh> kept_;   ///< of a run
     // Likewise, of those that are looked at alone: their pictures.

@@ -26,21 +26,19 @@ const std::vector<Kind>& drive_kinds()
          {Key{"joint", types::text, "The driven joint."}.needed(), coordinate_key()}},
         {"distance",
          "prescribes the distance between two points",
-         {Key{"between", types::names,
-              "Names of two different bodies, first and second; one of them may be `\"world\"`."}
-              .needed(),
-          Key{"points", types::pair,
+         {Key{"between", types::names, two_bodies_or_points}.needed_without("points"),
+          Key{"points", types::two_points,
               "One point per body, in that body's coordinates. Default: the reference points (for the world: "
               "its origin).",
               "m"}}},
         {"point",
          "prescribes the path of a point of a body",
-         {Key{"body", types::text, "Name of the body."}.needed(),
-          Key{"point", types::vector3, "Position of the point in body coordinates.", "m", "[0, 0, 0]"}}},
+         {Key{"body", types::text, body_or_point}.needed_without("point"),
+          Key{"point", types::point, "Position of the point in body coordinates.", "m", "[0, 0, 0]"}}},
         {"body",
          "prescribes the path of a point of a body and holds the body's orientation",
-         {Key{"body", types::text, "Name of the body."}.needed(),
-          Key{"point", types::vector3, "Position of the point in body coordinates.", "m", "[0, 0, 0]"}}}};
+         {Key{"body", types::text, body_or_point}.needed_without("point"),
+          Key{"point", types::point, "Position of the point in body coordinates.", "m", "[0, 0, 0]"}}}};
     return all;
 }
 
@@ -114,8 +112,11 @@ std::string drive_name(const Section& drive)
 {
     if (drive.has("name")) return drive.text("name");
     if (drive.find("joint") != nullptr) return "drive of " + drive.text("joint");
+    if (drive.is_implied("body")) return "drive of " + drive.find("point")->text;
     if (drive.find("body") != nullptr) return "drive of " + drive.text("body");
-    const Value* between = drive.find("between");
+    const Value *between = drive.find("between"), *points = drive.find("points");
+    if (points != nullptr && !points->texts.empty())
+        return "drive " + points->texts[0] + "-" + points->texts[1];
     return between == nullptr ? "" : "drive " + between->texts[0] + "-" + between->texts[1];
 }
 
@@ -235,13 +236,12 @@ Joint make_on_joint(Builder& builder, const Section& drive, const std::string& n
 Joint make_drive(Builder& builder, const Section& drive, const std::string& name, const BodyReference& first,
                  const BodyReference& second)
 {
-    const Section* time = only_section(builder.top(), "time");
+    const Section* time = only_section(builder.run(), "time");
     const double start = time == nullptr ? 0 : time->number("start"),
                  end = time == nullptr ? start : time->number("end");
     const Duration during{start, end, std::max(start, drive.has("from") ? drive.number("from") : start),
                           std::min(end, drive.has("until") ? drive.number("until") : end)};
-    std::vector<Matrix34> all;
-    for (const Body& body : builder.model().bodies()) all.push_back(body.X);
+    const std::vector<Matrix34> all = builder.start_configurations();
     const Configurations X(all);
     const std::string type = drive.text("type");
     if (type == "joint") return make_on_joint(builder, drive, name, during, X);
@@ -321,7 +321,7 @@ Key step_key(const KeyType& numbers)
 
 void read_times(const Builder& builder, const Section& section, Joint& joint)
 {
-    const Section* time = only_section(builder.top(), "time");
+    const Section* time = only_section(builder.run(), "time");
     if (section.has("from")) joint.from = section.number("from");
     if (section.has("until")) joint.until = section.number("until");
     if (time == nullptr) return;
@@ -358,7 +358,7 @@ Table drive_table()
         "of a point from its initial position, in m and world axes; for a path give three numbers wherever "
         "one is listed below. The reaction of a drive acts on the second body, and its power enters the "
         "energy balance. Initial velocities must agree with the law, or `[start]` sets `initial = "
-        "\"project\"`.",
+        "\"project\"`; without any initial velocity in the scenario this is done by itself, with a warning.",
         {Key{"name", types::text,
              "Name of the drive; results list drives among the joints. Default: `drive of` and the joint or "
              "body."},

@@ -46,6 +46,31 @@ constexpr std::string_view rate_suffix = "_rate";
                  "give an expression of coordinates and their rates");
 }
 
+/// A number of a sensor.
+void add_reading(Inputs& inputs, const Sensor& sensor, const std::string& symbol, const std::string& text,
+                 const std::string& path)
+{
+    const Reference reference = split(text);
+    std::string has;
+    for (const SensorComponent& component : sensor.components) {
+        has += (has.empty() ? "it has " : ", ") + component.name;
+        const NamedCoordinate& q = component.coordinate;
+        if (component.name != reference.what || q.coordinate.forms.empty()) continue;
+        if (component.is_acceleration()) refuse_acceleration(path, symbol, text);
+        inputs.symbols.push_back(symbol);
+        inputs.reads.push_back({inputs.coordinates.size(), component.is_rate()});
+        inputs.coordinates.push_back({q.coordinate, q.at_stated, !component.is_rate()});
+        return;
+    }
+    const bool is_readable = !sensor.components[0].coordinate.coordinate.forms.empty();
+    refuse_input(is_readable ? "input-unknown" : "input-algebraic", path, symbol, text,
+                 is_readable
+                     ? "sensor '" + sensor.name + "' has no such number"
+                     : "a load cannot follow " + std::string(sensor.load >= 0 ? "a load" : "an energy"),
+                 is_readable ? has + ", as in \"" + sensor.name + "." + sensor.components[0].name + "\""
+                             : "give an expression of coordinates and their rates");
+}
+
 void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol, const std::string& text,
                const std::string& path)
 {
@@ -75,30 +100,23 @@ void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol
     }
     for (const Sensor& sensor : builder.model().sensors()) {
         known.push_back(sensor.name);
-        if (sensor.name != reference.name && sensor.name != text) continue;
-        std::string has;
-        for (const SensorComponent& component : sensor.components) {
-            has += (has.empty() ? "it has " : ", ") + component.name;
-            const NamedCoordinate& q = component.coordinate;
-            if (component.name != reference.what || q.coordinate.forms.empty()) continue;
-            if (component.is_acceleration()) refuse_acceleration(path, symbol, text);
-            inputs.symbols.push_back(symbol);
-            inputs.reads.push_back({inputs.coordinates.size(), component.is_rate()});
-            inputs.coordinates.push_back({q.coordinate, q.at_stated, !component.is_rate()});
-            return;
-        }
-        const bool is_readable = !sensor.components[0].coordinate.coordinate.forms.empty();
-        refuse_input(is_readable ? "input-unknown" : "input-algebraic", path, symbol, text,
-                     is_readable
-                         ? "sensor '" + sensor.name + "' has no such number"
-                         : "a load cannot follow " + std::string(sensor.load >= 0 ? "a load" : "an energy"),
-                     is_readable ? has + ", as in \"" + sensor.name + "." + sensor.components[0].name + "\""
-                                 : "give an expression of coordinates and their rates");
+        if (sensor.name == reference.name || sensor.name == text)
+            return add_reading(inputs, sensor, symbol, text, path);
+    }
+    for (const NamedPoint& point : builder.model().points()) {
+        if (point.body == world) continue;
+        known.push_back(point.name);
+        if (point.name == reference.name || point.name == text)
+            return add_reading(
+                inputs, point_sensor(point.name, point.body, point.position, builder.model().start().X),
+                symbol, text, path);
     }
     for (const Section& sensor : builder.top().sections("sensor"))
         if (sensor.has("name") && sensor.text("name") == reference.name && sensor.takes("load"))
             refuse_input("input-algebraic", path, symbol, text, "a load cannot follow a load",
                          "give an expression of coordinates and their rates");
+    if (builder.is_excused(reference.name))
+        throw InputError({"", path, "", "", "", "", ""});   // told already
     refuse_input("input-unknown", path, symbol, text, "there is nothing of this name",
                  suggest(reference.name, known).empty()
                      ? "give a joint and its coordinate, as in \"pivot.angle\" or \"pivot.angle_rate\""
@@ -200,7 +218,7 @@ std::vector<double> breaks_of(const Builder& builder, const Section& section,
 {
     std::vector<double> breaks;
     if (const Value* given = section.find("breaks")) breaks = given->numbers;
-    const Section* time = only_section(builder.top(), "time");
+    const Section* time = only_section(builder.run(), "time");
     for (const Expression& one : expressions) {
         if (time == nullptr || !time->is_valid()) break;
         // Bends that follow from time alone are known beforehand: elements end there.

@@ -14,11 +14,11 @@ namespace livens::inline io_internal {
 
 namespace {
 
-const Key at{"at", types::vector3, "Position of the joint in the world, where `[[body]]` places the bodies.",
+const Key at{"at", types::point, "Position of the joint in the world, where `[[body]]` places the bodies.",
              "m"};
 const Key axis{"axis", types::vector3,
                "Direction of the joint axis in the world, of any length; goes with `at`."};
-const Key points{"points", types::pair,
+const Key points{"points", types::two_points,
                  "The joint point on each body, in that body's coordinates. Default for a rod: the reference "
                  "points (for the world: its origin).",
                  "m"};
@@ -41,13 +41,82 @@ const Key angle_rate{"rate", types::number, "Initial rate of the angle; see also
 const Key displacement_rate{"rate", types::number,
                             "Initial rate of the displacement; see also `[[start.coordinates]]`.", "m/s"};
 
+/// Loads along a coordinate, which the joint brings itself: what read_joint_loads() makes of them.
+std::vector<Key> keys_along_angle()
+{
+    return {
+        Key{"damping", types::number, "Damping torque per rad/s of the rate.", "N m s/rad", "0"}.within(
+            not_negative),
+        Key{"stiffness", types::number, "Restoring torque per radian from `rest`.", "N m/rad", "0"}.within(
+            not_negative),
+        Key{"rest", types::number, "Unloaded angle of the stiffness.", "rad", "0"},
+        Key{"limits", types::interval,
+            "Smallest and largest angle; `-inf` or `inf` means no limit. Beyond a limit by d, a torque "
+            "limit_stiffness d (1 + limit_damping d') pushes back; it never pulls.",
+            "rad"}
+            .or_infinite(),
+        Key{"limit_stiffness", types::number,
+            "Stiffness of the limits. Default: such that a contact, half a period of the inertia on the "
+            "joint, lasts 0.03 T with T = sqrt(model length / gravity), or 0.3 s without gravity.",
+            "N m/rad"}
+            .within(positive),
+        Key{"limit_damping", types::number, "Damping of the limits. Default: T; 0 makes bounces lossless.",
+            "s/rad"}
+            .within(not_negative)};
+}
+std::vector<Key> keys_along_displacement()
+{
+    return {Key{"damping", types::number, "Damping force per m/s of the rate.", "N s/m", "0"}.within(
+                not_negative),
+            Key{"stiffness", types::number, "Restoring force per metre from `rest`.", "N/m", "0"}.within(
+                not_negative),
+            Key{"rest", types::number, "Unloaded displacement of the stiffness.", "m", "0"},
+            Key{"limits", types::interval,
+                "Smallest and largest displacement; `-inf` or `inf` means no limit. Beyond a limit by d, a "
+                "force limit_stiffness d (1 + limit_damping d') pushes back; it never pulls.",
+                "m"}
+                .or_infinite(),
+            Key{"limit_stiffness", types::number,
+                "Stiffness of the limits. Default: such that a contact, half a period of the mass on the "
+                "joint, lasts 0.03 T with T = sqrt(model length / gravity), or 0.3 s without gravity.",
+                "N/m"}
+                .within(positive),
+            Key{"limit_damping", types::number,
+                "Damping of the limits. Default: T / model length; 0 makes bounces lossless.", "s/m"}
+                .within(not_negative)};
+}
+
+std::vector<Key> and_along_angle(std::vector<Key> keys)
+{
+    for (Key& key : keys_along_angle()) keys.push_back(std::move(key));
+    return keys;
+}
+std::vector<Key> and_along_displacement(std::vector<Key> keys)
+{
+    for (Key& key : keys_along_displacement()) keys.push_back(std::move(key));
+    return keys;
+}
+/// Of a joint with two coordinates, a table for each.
+std::vector<Key> and_along_both(std::vector<Key> keys)
+{
+    keys.push_back(Key{"angle", types::table, "Damping, spring and limits along the angle."}.holding(
+        {"angle of a joint", "Loads along the angle.", keys_along_angle()}));
+    keys.push_back(
+        Key{"displacement", types::table, "Damping, spring and limits along the displacement."}.holding(
+            {"displacement of a joint", "Loads along the displacement.", keys_along_displacement()}));
+    return keys;
+}
+
 Key frames_of_joint()
 {
     return frames_key(
         "frame of a joint",
-        "One frame per body, in that body's coordinates, instead of all other placement keys. The third axis "
-        "of each frame is the joint axis. The first axes are aligned by weld, prismatic and "
-        "constant_velocity, and by a screw at zero displacement; other joints ignore them.");
+        "Two frames that the joint keeps together, one on each body and in that body's coordinates. They say "
+        "all about the placement: `at`, `axis`, `points` and `axes` are left out. The third axis of a frame "
+        "is "
+        "the joint axis. The first axis counts where a joint prevents the turn about the third: weld, "
+        "prismatic, constant_velocity, and screw at zero displacement align the first axes of both frames; "
+        "other types ignore them.");
 }
 
 /// A kind of the library with a maker that takes a frame.
@@ -97,36 +166,33 @@ Joint make_slot(const JointParts& p)
 std::vector<JointKind> kinds_of_one_axis()
 {
     const Key frames = frames_of_joint();
-    return {{{"weld", "rigid connection (6 constraints)", {at, points, frames}},
-             Location::at_point,
-             as_it_stands<weld>},
-            {{"revolute",
-              "hinge: rotation about one axis (5 constraints)",
-              {at, axis, points, axes, frames, angle, angle_rate}},
-             Location::on_axis,
-             by_frame<revolute>},
-            {{"prismatic",
-              "slider: translation along one axis (5 constraints)",
-              {at, axis, points, axes, frames, displacement, displacement_rate}},
-             Location::on_axis,
-             as_it_stands<prismatic>},
-            {{"cylindrical",
-              "rotation about one axis and translation along it (4 constraints)",
-              {at, axis, points, axes, frames}},
-             Location::on_axis,
-             by_frame<cylindrical>},
-            {{"screw",
-              "rotation about one axis with proportional translation along it (5 constraints)",
+    return {
+        {{"weld", "rigid connection (6 constraints)", {at, points, frames}},
+         Location::at_point,
+         as_it_stands<weld>},
+        {{"revolute", "hinge: rotation about one axis (5 constraints)",
+          and_along_angle({at, axis, points, axes, frames, angle, angle_rate})},
+         Location::on_axis,
+         by_frame<revolute>},
+        {{"prismatic", "slider: translation along one axis (5 constraints)",
+          and_along_displacement({at, axis, points, axes, frames, displacement, displacement_rate})},
+         Location::on_axis,
+         as_it_stands<prismatic>},
+        {{"cylindrical", "rotation about one axis and translation along it (4 constraints)",
+          and_along_both({at, axis, points, axes, frames})},
+         Location::on_axis,
+         by_frame<cylindrical>},
+        {{"screw", "rotation about one axis with proportional translation along it (5 constraints)",
+          and_along_both(
               {at, axis, points, axes, frames,
                Key{"pitch", types::number, "Displacement per turn; positive for a right-handed thread.", "m"}
-                   .needed()}},
-             Location::on_axis,
-             make_screw},
-            {{"planar",
-              "translation in a plane and rotation about its normal, the joint axis (3 constraints)",
-              {at, axis, points, axes, frames, angle, angle_rate}},
-             Location::on_axis,
-             by_frame<planar>}};
+                   .needed()})},
+         Location::on_axis,
+         make_screw},
+        {{"planar", "translation in a plane and rotation about its normal, the joint axis (3 constraints)",
+          and_along_angle({at, axis, points, axes, frames, angle, angle_rate})},
+         Location::on_axis,
+         by_frame<planar>}};
 }
 
 /// What holds points, or the directions of two axes.
@@ -144,12 +210,16 @@ std::vector<JointKind> kinds_of_points_and_axes()
           {at, points, axes, frames}},
          Location::on_two_axes,
          as_it_stands<constant_velocity>},
-        {{"spherical", "ball joint: one common point (3 constraints)", {at, points}},
+        {{"spherical",
+          "ball joint: one common point (3 constraints)",
+          {at, points,
+           Key{"damping", types::number, "Damping torque per rad/s of relative angular velocity.",
+               "N m s/rad", "0"}
+               .within(not_negative)}},
          Location::at_point,
          by_frame<spherical>},
-        {{"point_on_line",
-          "a point of the second body stays on a line of the first (2 constraints)",
-          {at, line, points, frames, displacement, displacement_rate}},
+        {{"point_on_line", "a point of the second body stays on a line of the first (2 constraints)",
+          and_along_displacement({at, line, points, frames, displacement, displacement_rate})},
          Location::on_line,
          by_frame<point_on_line>},
         {{"point_in_plane",
@@ -157,9 +227,8 @@ std::vector<JointKind> kinds_of_points_and_axes()
           {at, line, points, frames}},
          Location::on_line,
          by_frame<point_in_plane>},
-        {{"parallel_axes",
-          "an axis of each body; the two stay parallel (2 constraints)",
-          {free_axis, axes, frames, angle, angle_rate}},
+        {{"parallel_axes", "an axis of each body; the two stay parallel (2 constraints)",
+          and_along_angle({free_axis, axes, frames, angle, angle_rate})},
          Location::along_axis,
          by_frame<parallel_axes>},
         {{"perpendicular_axes",
@@ -189,7 +258,7 @@ std::vector<JointKind> kinds_of_curves_and_distances()
                      .needed(),
                  Key{"closed", types::truth, "Whether the curve continues from the last point to the first.",
                      "", "false"}}}),
-           Key{"point", types::vector3, "The point that slides, in coordinates of the second body.", "m",
+           Key{"point", types::point, "The point that slides, in coordinates of the second body.", "m",
                "[0, 0, 0]"}}},
          Location::on_curve,
          make_slot},
@@ -246,7 +315,7 @@ const std::vector<JointKind>& joint_kinds()
 Key frames_key(const std::string& heading, const std::string& doc)
 {
     std::vector<Key> keys{
-        {"point", types::vector3, "Origin of the frame, in body coordinates.", "m", "[0, 0, 0]"}};
+        {"point", types::point, "Origin of the frame, in body coordinates.", "m", "[0, 0, 0]"}};
     for (const Key& key : orientation_keys()) keys.push_back(key);
     return Key{"frames", types::tables, doc}.holding(
         {heading, "Origin and axes of a frame on a body.", keys});

@@ -173,9 +173,8 @@ bool is_fitted(const Section& top)
 Joint fitted(Builder& builder, const Section& joint, const std::function<Joint(const JointFrame&)>& make,
              const JointFrame& frame)
 {
-    const Section* time = only_section(builder.top(), "time");
-    std::vector<Matrix34> X;
-    for (const Body& body : builder.model().bodies()) X.push_back(body.X);
+    const Section* time = only_section(builder.run(), "time");
+    const std::vector<Matrix34> X = builder.start_configurations();
     const Instant at{time == nullptr ? 0 : time->number("start")};
     FittedJoint fit = fit_joint(make, frame, at, X, builder.length());
     if (fit.shift > widest_fit * builder.length() || fit.turn > widest_fit) return make(frame);
@@ -199,7 +198,7 @@ Joint make_joint(Builder& builder, const Section& joint, const std::string& name
         parts.stretch_second = builder.stretch(second);
         return joint_kinds()[static_cast<std::size_t>(joint.kind())].make(parts);
     };
-    Joint made = is_fitted(builder.top()) ? fitted(builder, joint, make, frame) : make(frame);
+    Joint made = is_fitted(builder.run()) ? fitted(builder, joint, make, frame) : make(frame);
     read_times(builder, joint, made);
     if (joint.has("coordinate")) made.coordinates.front().at_stated = joint.number("coordinate");
     return made;
@@ -218,6 +217,7 @@ const Joint* find_joint(Builder& builder, const Section& section, std::size_t i)
     for (const Section& other : builder.top().sections("joint"))
         is_stated =
             is_stated || (&other != &section && other.has("name") && other.text("name") == names.texts[i]);
+    if (builder.is_excused(names.texts[i])) return nullptr;
     if (!is_stated || builder.findings().n_errors() == 0)
         builder.findings().error(names.node->items()[i].place, "joint-unknown",
                                  section.label() + " refers to '" + names.texts[i] +
@@ -232,8 +232,7 @@ void read_coupling(Builder& builder, const Section& section, const std::string& 
     if (section.find("joints") == nullptr) return;
     const Joint *first = find_joint(builder, section, 0), *second = find_joint(builder, section, 1);
     if (first == nullptr || second == nullptr || !section.is_valid()) return;
-    std::vector<Matrix34> X;
-    for (const Body& body : builder.model().bodies()) X.push_back(body.X);
+    const std::vector<Matrix34> X = builder.start_configurations();
     builder.guard(path, [&] {
         Joint joint = joint_kinds()[static_cast<std::size_t>(section.kind())].make({section,
                                                                                     name,
@@ -335,38 +334,36 @@ Table joint_table()
         if (joint_kinds()[i].location == Location::of_joints)
             keys[0].required = true;
         else
-            keys.insert(
-                keys.begin(),
-                Key{"between", types::names,
-                    "Names of two different bodies, first and second; one of them may be `\"world\"`."}
-                    .needed());
+            keys.insert(keys.begin(),
+                        Key{"between", types::names, two_bodies_or_points}.needed_without("points"));
     }
     return Table{
         "[[joint]]",
         "A joint is placed in one of three ways. First, by `at`: one point in the world, where `[[body]]` "
         "places the bodies; `axis` and `axes` are then world directions. Second, by `points`: one point per "
-        "body, in that body's coordinates (for the world: world coordinates); `axes` are then one direction "
-        "per body, in the same coordinates. Third, by `frames`: one frame per body. Only the second and "
-        "third way can describe bodies whose placement violates the joint. The reaction of a joint is the "
-        "force and torque that it exerts on the second body of `between`, or on the only body of a joint to "
-        "the world. Joint coordinates are those of the second body relative to the first, right-handed about "
-        "the axis. They are zero where `[[body]]` places the bodies, unless `coordinate` gives another "
-        "value; angles count full turns.",
+        "body, in its coordinates; `axes` are then one direction per body, in the same coordinates. Third, "
+        "by `frames`: one frame per body. Only the second and third way can describe bodies whose placement "
+        "violates the joint. The reaction of a joint is the force and torque that it exerts on the second "
+        "body of `between`, or on the only body of a joint to the world. Joint coordinates are those of the "
+        "second body relative to the first, right-handed about the axis. They are zero where `[[body]]` "
+        "places the bodies, unless `coordinate` gives another value; angles count full turns.",
         {Key{"name", types::text,
-             "Name of the joint. Default: type and bodies, as in `rod world-upper`, if no other joint has "
-             "this name."},
+             "Name of the joint. Default: type and bodies, as in `rod world-upper`, if not taken."},
          Key{"type", types::choice, ""}.needed(),
          Key{"until", types::number,
-             "Time at which the joint is released: velocities continue, the reaction ends. Default: never. "
-             "For the families lobatto and radau.",
-             "s"}}}
+             "Time of release: velocities continue, the reaction ends. Default: never. lobatto and radau "
+             "only.",
+             "s"},
+         Key{"rotor_inertia", types::later,
+             "a point on a line of the world and a rack_and_pinion have this effect: docs/howto/motors.md"}}}
         .with_kinds("type", std::move(all));
 }
 
 void read_joints(Builder& builder)
 {
     Findings& findings = builder.findings();
-    std::unordered_set<std::string> taken;
+    std::unordered_set<std::string> taken;   // by what is included
+    for (const Joint& joint : builder.model().joints()) taken.insert(joint.name);
     // Couplings follow the joints that they couple, wherever they stand in the file.
     for (const bool is_coupling : {false, true})
         for (const Section& section : builder.top().sections("joint")) {

@@ -68,8 +68,8 @@ const std::vector<SensorKind>& sensor_kinds()
         {{"point",
           "position, velocity and acceleration of a point of a body, world axes: x, y, z in m, vx, vy, vz in "
           "m/s, ax, ay, az in m/s^2",
-          {body,
-           Key{"point", types::vector3, "Position of the point in body coordinates.", "m", "[0, 0, 0]"}}},
+          {Key{"body", types::text, body_or_point}.needed_without("point"),
+           Key{"point", types::point, "Position of the point in body coordinates.", "m", "[0, 0, 0]"}}},
          make_point},
         {{"joint",
           "coordinates of a joint with rates and accelerations: angle, angle_rate, angle_acceleration, "
@@ -79,17 +79,16 @@ const std::vector<SensorKind>& sensor_kinds()
         {{"relative",
           "position of a point of the second body relative to a point of the first, in axes of the first: x, "
           "y, z, their rates vx, vy, vz and second derivatives ax, ay, az",
-          {Key{"between", types::names,
-               "Names of two different bodies, first and second; one of them may be `\"world\"`."}
-               .needed(),
-           Key{"points", types::pair,
+          {Key{"between", types::names, two_bodies_or_points}.needed_without("points"),
+           Key{"points", types::two_points,
                "One point per body, in that body's coordinates. Default: the reference points (for the "
                "world: its origin).",
                "m"}}},
          make_relative},
         {{"load",
           "forces and power of a load: for a spring between points its `force` (positive in tension) and "
-          "`length`; for springs and actuators on joints the `force` along the coordinate; for a bushing "
+          "`length`; for springs and actuators on joints their `effort` along the coordinate (N, N m); for a "
+          "bushing "
           "`force_x` .. `torque_z`, and u as `displacement_x` .. `rotation_z`; for other loads `x`, `y`, "
           "`z`; for all the `power` supplied to the bodies, W",
           {Key{"load", types::text, "Name of the load."}.needed()}},
@@ -123,8 +122,7 @@ void read_sensor(Builder& builder, const Section& section, std::unordered_set<st
         if (!first.is_usable) return;
     }
     if (findings.n_errors() > before || !section.is_valid()) return;
-    std::vector<Matrix34> X;
-    for (const Body& body : builder.model().bodies()) X.push_back(body.X);
+    const std::vector<Matrix34> X = builder.start_configurations();
     const auto make = sensor_kinds()[static_cast<std::size_t>(section.kind())].make;
     builder.guard(path, [&] {
         builder.model().add_sensor(make({section, name, first.index, second.index, builder, X}));

@@ -61,10 +61,10 @@ bool check_bushing(const Section& load)
 Load make_bushing(const LoadSources& p)
 {
     Bushing law{read_matrix(p.section, "stiffness"), read_matrix(p.section, "damping"), {}};
+    law.by_angular_velocity = p.section.text("damping_by") == "angular_velocity";
     if (const Value* v = p.section.find("preload"))
         for (int i = 0; i < 6; ++i) law.preload[i] = v->numbers[i];
-    std::vector<Matrix34> X;
-    for (const Body& body : p.builder.model().bodies()) X.push_back(body.X);
+    const std::vector<Matrix34> X = p.builder.start_configurations();
     return bushing(p.name, p.first, read_bushing_frame(p, 0), p.second, read_bushing_frame(p, 1), law, X);
 }
 

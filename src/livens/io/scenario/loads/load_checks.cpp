@@ -84,6 +84,8 @@ bool check_law(const Section& load)
 /// Between two points, or on a joint; linear, or by a law. All that is missing is told.
 bool check_spring(const Section& load)
 {
+    if (const Value* points = load.find("points"); points != nullptr && points->numbers.empty())
+        return false;   // names of no points, which was told
     if (!load.at_most_one({"between", "joint"}, "spring-place")) return false;
     if (!load.has("joint") && !load.has("between"))
         return load.error(

@@ -14,6 +14,14 @@ namespace {
 
 Key body_key() { return Key{"body", types::text, "The body on which the load acts."}.needed(); }
 
+/// Of what acts at a point.
+Key body_of_point()
+{
+    return Key{"body", types::text,
+               "The body on which the load acts. Not needed with the name of a point in `point`."}
+        .needed_without("point");
+}
+
 Key interpolation_key()
 {
     return choice("interpolation", {"linear", "spline"},
@@ -48,7 +56,7 @@ std::vector<Key> keys_on_body(const std::string& what, std::string_view unit, co
          "Values are interpolated between the times and constant before and after.",
          {times_key(), Key{"values", types::rows, "One value per time.", unit}.needed(),
           interpolation_key()}});
-    return joined({body_key()}, more,
+    return joined({more.empty() || more.front().name != "point" ? body_key() : body_of_point()}, more,
                   std::vector<Key>{
                       Key{"value", types::vector3, "Constant value. Excludes `table` and `expression`.", unit}
                           .or_formulas(formulas_for_value),
@@ -75,10 +83,12 @@ std::vector<Key> keys_of_spring()
           interpolation_key()}});
     return {
         Key{"between", types::names,
-            "Names of the two bodies, first and second; one of them may be `\"world\"`."},
+            "Names of the two bodies, first and second; one of them may be `\"world\"`. Not needed with "
+            "names "
+            "of points in `points`."},
         Key{"joint", types::text, "Joint along whose coordinate the spring acts; instead of `between`."},
         coordinate_key(),
-        Key{"points", types::pair,
+        Key{"points", types::two_points,
             "Attachment point on each body, in that body's coordinates. Default: the reference points (for "
             "the world: its origin).",
             "m"},
@@ -175,19 +185,24 @@ std::vector<Key> keys_of_bushing()
         Key{"between", types::names,
             "Names of the two bodies, first and second; one of them may be `\"world\"`."}
             .needed(),
-        Key{"at", types::vector3,
+        Key{"at", types::point,
             "Initial position in the world; the axes of both frames are then initially the world axes.", "m"},
         frames_key("frame of a bushing",
-                   "One frame per body, in that body's coordinates, instead of `at`. Displacements and "
-                   "rotations are those of the second frame relative to the first, in axes of the first."),
+                   "Two frames between which the bushing acts, one on each body and in that body's "
+                   "coordinates, instead of `at`. Displacements and rotations are those of the second frame "
+                   "relative to the first, in axes of the first."),
         Key{"stiffness", types::list, "Force and torque " + of_u}
             .each_in(units_of_bushing("N/m", "N/rad", "N m/m", "N m/rad"))
             .needed(),
         Key{"damping", types::list,
             "Damping in the same form, for the rate of u. Its last three components are rates of the "
             "rotation vector: they equal the relative angular velocity for small rotations and for rotations "
-            "about one axis, but not for large rotations about several axes."}
+            "about one axis, but not for large rotations about several axes; see `damping_by`."}
             .each_in(units_of_bushing("N s/m", "N s/rad", "N m s/m", "N m s/rad")),
+        choice("damping_by", {"rotation_vector", "angular_velocity"},
+               "Quantity that the last three components of the damping act on: the rate of the rotation "
+               "vector, or the "
+               "relative angular velocity in axes of the first frame."),
         Key{"preload", types::list,
             "Three forces in N and three torques in N m that do not depend on u, with the sign of the "
             "elastic ones at positive u."}
@@ -208,6 +223,11 @@ Load make_drag(const LoadSources& p)
                 places(p.builder));
 }
 
+Load make_rotational_damper(const LoadSources& p)
+{
+    return rotational_damper(p.name, p.first, p.second, p.section.number("damping"), places(p.builder));
+}
+
 Load make_attraction(const LoadSources& p)
 {
     return attraction(p.name, p.first, p.builder.model().bodies()[p.first],
@@ -215,11 +235,25 @@ Load make_attraction(const LoadSources& p)
                       places(p.builder));
 }
 
+std::vector<Key> keys_of_attraction()
+{
+    return {body_key(),
+            Key{"point", types::point, "Position of the attracting point in the world.", "m", "[0, 0, 0]"},
+            Key{"mu", types::number, "Gravitational parameter: gravitational constant times attracting mass.",
+                "m^3/s^2"}
+                .needed()
+                .within(positive),
+            Key{"gradient", types::truth,
+                "Whether to include the next term of the potential: the gravity gradient, which exerts a "
+                "torque on an extended body.",
+                "", "false"}};
+}
+
 }   // namespace
 
 const std::vector<LoadKind>& load_kinds()
 {
-    const Key point{"point", types::vector3, "Point of application, in body coordinates.", "m", "[0, 0, 0]"};
+    const Key point{"point", types::point, "Point of application, in body coordinates.", "m", "[0, 0, 0]"};
     static const std::vector<LoadKind> all{
         {{"force", "acts at a point of a body", keys_on_body("force", "N", {point})},
          make_force,
@@ -237,27 +271,25 @@ const std::vector<LoadKind>& load_kinds()
           keys_of_bushing()},
          make_bushing,
          check_bushing},
+        {{"rotational_damper",
+          "torque against the relative angular velocity of two bodies, for rotations of any kind",
+          {Key{"between", types::names,
+               "Names of the two bodies, first and second; one of them may be `\"world\"`."}
+               .needed(),
+           Key{"damping", types::number, "Damping torque per rad/s.", "N m s/rad"}.needed().within(
+               not_negative)}},
+         make_rotational_damper},
         {{"drag",
           "resistance (linear + quadratic abs(v)) v against the velocity v of a point relative to the medium",
-          {body_key(), point,
+          {body_of_point(), point,
            Key{"linear", types::number, "Coefficient of the linear part.", "N s/m", "0"}.within(not_negative),
            Key{"quadratic", types::number, "Coefficient of the quadratic part.", "N s^2/m^2", "0"}.within(
                not_negative),
            Key{"medium", types::vector3, "Velocity of the medium, world axes.", "m/s", "[0, 0, 0]"}}},
          make_drag,
          check_drag},
-        {{"attraction",
-          "gravitational attraction toward a point: mu mass / r^2 at the centre of mass",
-          {body_key(),
-           Key{"point", types::vector3, "Position of the attracting point in the world.", "m", "[0, 0, 0]"},
-           Key{"mu", types::number, "Gravitational parameter: gravitational constant times attracting mass.",
-               "m^3/s^2"}
-               .needed()
-               .within(positive),
-           Key{"gradient", types::truth,
-               "Whether to include the next term of the potential: the gravity gradient, which exerts a "
-               "torque on an extended body.",
-               "", "false"}}},
+        {{"attraction", "gravitational attraction toward a point: mu mass / r^2 at the centre of mass",
+          keys_of_attraction()},
          make_attraction},
         {{"traction", "force per unit area on a surface of the body's shape",
           keys_on_body("traction", "Pa",

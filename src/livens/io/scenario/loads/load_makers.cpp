@@ -37,7 +37,7 @@ TimeFunction while_it_acts(const Section& load, TimeFunction value)
 /// The same, if it has a value when the motion begins.
 TimeFunction told(const LoadSources& p, const Expression& expression, TimeFunction value)
 {
-    const Section* time = only_section(p.builder.top(), "time");
+    const Section* time = only_section(p.builder.run(), "time");
     const double start = time == nullptr ? 0 : time->number("start");
     // A formula that has no value at the start would fail in the first element, with less to be said.
     if (std::isfinite(value({start, Side::right}).value)) return value;
@@ -68,24 +68,13 @@ std::vector<TimeFunction> read_values(const LoadSources& p, std::size_t n)
     return values;
 }
 
-/// Whether elements end where laws bend: not those of other families, nor of those that are solved together
-/// or against time.
-bool ends_at_bends(const Builder& builder)
-{
-    const Section* const method = only_section(builder.top(), "method");
-    const Section* const time = only_section(builder.top(), "time");
-    const Section* const end = only_section(builder.top(), "end");
-    const std::string family = method != nullptr ? method->text("family") : "lobatto";
-    const bool is_nodal = family == "lobatto" || family == "radau" || family == "auto";
-    // Elements are cut at bends while a motion is followed forwards, one element after the other. What is
-    // solved together has its mesh before the bends are known.
-    const bool is_march = end == nullptr || end->pick<Known>("given") == Known::nothing;
-    return is_nodal && is_march && !(method != nullptr && method->has("window")) &&
-           !(time != nullptr && time->text("breaks") == "ignore");
-}
+/// What one factor is reported as; of three, `name` is not used.
+struct FactorName {
+    std::string name, unit;
+};
 
 /// By formulas that look at the motion: what units are multiplied by.
-Load by_formula(const LoadSources& p, const std::string& type, const std::string& unit,
+Load by_formula(const LoadSources& p, const std::string& type, const FactorName& factor,
                 std::vector<Load> units, const Inputs& inputs)
 {
     const std::vector<Expression> expressions = read_expressions(p.section, inputs, p.path());
@@ -109,8 +98,8 @@ Load by_formula(const LoadSources& p, const std::string& type, const std::string
     parts.steepest = steepness_of(expressions, inputs);
     parts.breaks = acts.breaks();
     for (std::size_t k = 0; k < parts.units.size(); ++k) {
-        const std::string name = parts.units.size() == 1 ? "force" : std::string(1, "xyz"[k]);
-        parts.readings.push_back(factor_reading(name, unit, parts.law, k, parts.units.size()));
+        const std::string name = parts.units.size() == 1 ? factor.name : std::string(1, "xyz"[k]);
+        parts.readings.push_back(factor_reading(name, factor.unit, parts.law, k, parts.units.size()));
     }
     parts.breaks.insert(parts.breaks.end(), breaks.begin(), breaks.end());
     parts.domain =
@@ -155,7 +144,7 @@ Load on_body(const LoadSources& p, const Make& make)
         units.push_back(make(in_axes(p, unit)));
     }
     const std::string type = units[0].type, unit = units[0].readings[0].unit;
-    return by_formula(p, type, unit, std::move(units), inputs);
+    return by_formula(p, type, {"", unit}, std::move(units), inputs);
 }
 
 /// Straight lines bend where they meet, which happens when the motion is there.
@@ -186,6 +175,20 @@ SpringLaw read_law(const LoadSources& p)
 
 }   // namespace
 
+bool ends_at_bends(const Builder& builder)
+{
+    const Section* const method = only_section(builder.run(), "method");
+    const Section* const time = only_section(builder.run(), "time");
+    const Section* const end = only_section(builder.run(), "end");
+    const std::string family = method != nullptr ? method->text("family") : "lobatto";
+    const bool is_nodal = family == "lobatto" || family == "radau" || family == "auto";
+    // Elements are cut at bends while a motion is followed forwards, one element after the other. What is
+    // solved together has its mesh before the bends are known.
+    const bool is_march = end == nullptr || end->pick<Known>("given") == Known::nothing;
+    return is_nodal && is_march && !(method != nullptr && method->has("window")) &&
+           !(time != nullptr && time->text("breaks") == "ignore");
+}
+
 const NamedCoordinate& coordinate_of(const LoadSources& p)
 {
     const NamedCoordinate& coordinate = *find_coordinate(p.builder, p.section, p.path()).coordinate;
@@ -197,8 +200,7 @@ Vector3 point_of(const LoadSources& p) { return p.builder.in_axes(p.first, p.sec
 
 std::vector<Matrix34> places(const Builder& builder)
 {
-    std::vector<Matrix34> X;
-    for (const Body& body : builder.model().bodies()) X.push_back(body.X);
+    const std::vector<Matrix34> X = builder.start_configurations();
     return X;
 }
 
@@ -284,7 +286,7 @@ Load make_pressure(const LoadSources& p)
     const Inputs inputs = read_inputs(p.builder, p.section, p.path());
     const TimeVector gradient = p.section.has("gradient") ? gradient_of(p, 0) : TimeVector{0.0, 0.0, 0.0};
     if (inputs.reads.empty()) return pressure(p.name, p.first, surface, read_values(p, 1)[0], gradient);
-    return by_formula(p, "pressure", "Pa", {pressure(p.name, p.first, surface, 1.0)}, inputs);
+    return by_formula(p, "pressure", {"pressure", "Pa"}, {pressure(p.name, p.first, surface, 1.0)}, inputs);
 }
 
 Load make_actuator(const LoadSources& p)
@@ -293,7 +295,7 @@ Load make_actuator(const LoadSources& p)
     const Inputs inputs = read_inputs(p.builder, p.section, p.path());
     const std::vector<Matrix34> X = places(p.builder);
     if (inputs.reads.empty()) return actuator(p.name, coordinate, read_values(p, 1)[0], X);
-    return by_formula(p, "actuator", coordinate.coordinate.is_angle() ? "N m" : "N",
+    return by_formula(p, "actuator", {"effort", coordinate.coordinate.is_angle() ? "N m" : "N"},
                       {unit_along(p.name, coordinate.coordinate, X)}, inputs);
 }
 

@@ -3,6 +3,7 @@
 // Short ones stand in load_kinds.cpp.
 #pragma once
 
+#include "livens/io/scenario/builder.h"
 #include "livens/io/scenario/loads/load_kinds.h"
 
 namespace livens::inline io_internal {
@@ -13,6 +14,20 @@ Vector3 point_of(const LoadSources& p);
 const NamedCoordinate& coordinate_of(const LoadSources& p);
 /// X of all bodies at the start.
 std::vector<Matrix34> places(const Builder& builder);
+
+/// Whether elements end where laws bend: not those of other families, nor of those that are solved together
+/// or against time.
+bool ends_at_bends(const Builder& builder);
+
+/// Names of loads that joints state themselves.
+std::vector<std::string> names_of_joint_loads(const Builder& builder);
+/// Adds these to the model; reports all it finds.
+void read_joint_loads(Builder& builder);
+
+/// `limits` of a joint, with what their springs are by default where a force along the coordinate moves this
+/// inertia. Throws InputError `joint-limits` at path.
+JointLimits read_limits(const Builder& builder, const Section& keys, const Joint& joint,
+                        const NamedCoordinate& coordinate, double inertia, const std::string& path);
 
 // False after an error.
 bool check_value(const Section& load);

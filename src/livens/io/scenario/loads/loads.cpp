@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "livens/io/scenario/joints/joints.h"
-#include "livens/io/scenario/loads/load_kinds.h"
+#include "livens/io/scenario/loads/load_makers.h"
 
 namespace livens::inline io_internal {
 
@@ -17,7 +17,7 @@ bool check_interval(const Builder& builder, const Section& load, Findings& findi
     if (acts.until <= acts.from)
         return load.error("until", "window-order",
                           "'until' of " + load.label() + " must be later than 'from'");
-    const Section* time = only_section(builder.top(), "time");
+    const Section* time = only_section(builder.run(), "time");
     if (time == nullptr || !time->is_valid()) return true;
     // Only a warning: the interval of a study may be shortened while its loads stay.
     if (acts.from >= time->number("end") || acts.until <= time->number("start"))
@@ -33,7 +33,8 @@ std::string claim_load_name(const Section& load, std::unordered_set<std::string>
     if (load.has("name")) {
         if (load.find("name") != nullptr)
             claim_name(load, "load", load.text("name"), taken,
-                       {"", "rename one of them, or leave out the name"});
+                       {"a joint with 'damping' or 'stiffness' is a load of its name as well",
+                        "rename one of them, or leave out the name"});
         return load.text("name");
     }
     const std::string base = default_name(load);
@@ -89,7 +90,7 @@ namespace {
 /// What is no number at the start would end the motion before it begins.
 void check_start(Builder& builder)
 {
-    const Section *start = only_section(builder.top(), "start"), *time = only_section(builder.top(), "time");
+    const Section *start = only_section(builder.run(), "start"), *time = only_section(builder.run(), "time");
     if (start != nullptr && start->text("initial") == "project") return;   // from another place
     const Model& model = builder.model();
     const State state = model.start();
@@ -116,7 +117,9 @@ void read_loads(Builder& builder)
 {
     const std::span<const Section> sections = builder.top().sections("load");
     // Known names come first, so that a default does not take one of them.
-    std::unordered_set<std::string> taken;
+    const std::vector<std::string> of_joints = names_of_joint_loads(builder);
+    std::unordered_set<std::string> taken(of_joints.begin(), of_joints.end());
+    for (const Load& load : builder.model().loads()) taken.insert(load.name);   // of what is included
     std::vector<std::string> names(sections.size());
     std::vector<bool> is_good(sections.size());
     for (const bool given : {true, false})
@@ -128,6 +131,7 @@ void read_loads(Builder& builder)
             is_good[i] = builder.findings().n_errors() == before;
         }
     for (std::size_t i = 0; i < sections.size(); ++i) read_load(builder, sections[i], names[i], is_good[i]);
+    read_joint_loads(builder);
     check_start(builder);
 }
 

@@ -2,6 +2,8 @@
 // [start], [end] and [body.end]: what is known at the ends of time.
 // Hamilton's law of theory.md, The law, holds with positions or momenta stated once each, at either end.
 // Which ones are stated says `given`; the values stand at the bodies.
+#include <algorithm>
+
 #include "livens/base/text.h"
 #include "livens/dynamics/start/prepared.h"
 #include "livens/dynamics/start/singular.h"
@@ -126,10 +128,13 @@ Table start_table()
         "needed in any case, since joints placed by `at` refer to them.",
         {given("state", "state: positions and velocities; positions, or momenta: only these; nothing: "
                         "neither. The rest is a first guess."),
-         choice<StartPolicy>("initial",
-                             "Treatment of initial values that violate a joint. check: an error that names "
-                             "the joint; project: positions and velocities are moved to the nearest "
-                             "admissible ones, where distances are weighted by mass (the mass metric)."),
+         choice<StartPolicy>(
+             "initial",
+             "Treatment of initial values that violate a joint. check: an error that names "
+             "the joint; project: positions and velocities are moved to the nearest "
+             "admissible ones, where distances are weighted by mass (the mass metric). Default: check; "
+             "velocities alone are projected, with a warning, if the scenario gives none "
+             "and a drive moves at the initial time."),
          choice("joints", {"fixed", "fit"},
                 "Treatment of rounded joint dimensions. fixed: joints are used as given; fit: points and "
                 "axes on the second body of a joint are moved by the least amount that closes it where the "
@@ -161,18 +166,19 @@ Table end_table()
             {given("nothing", "As in `[start]`, for the values in `[body.end]`.")}};
 }
 
-void read_boundary(Builder& builder, Conditions& boundary)
+void read_boundary(const Builder& builder, Conditions& boundary)
 {
-    const Section* const start = only_section(builder.top(), "start");
-    const Section* const end = only_section(builder.top(), "end");
+    const Section* const start = only_section(builder.run(), "start");
+    const Section* const end = only_section(builder.run(), "end");
     boundary.at_start = start != nullptr ? start->pick<Known>("given") : Known::state;
     boundary.at_end = end != nullptr ? end->pick<Known>("given") : Known::nothing;
-    if (end != nullptr && !end->is_valid()) return;   // then bodies cannot be judged
-    const bool is_given = boundary.at_end != Known::nothing;
-    if (is_given) {
-        boundary.end.X.resize(builder.model().bodies().size());
-        boundary.end.V.resize(builder.model().bodies().size());
-    }
+    if (boundary.at_end == Known::nothing) return;
+    boundary.end.X.resize(builder.model().bodies().size());
+    boundary.end.V.resize(builder.model().bodies().size());
+}
+
+void read_body_ends(Builder& builder, bool is_given, State& end)
+{
     for (const Section& body : builder.top().sections("body")) {
         if (!is_given) {
             body.refuse({"end"}, "boundary-conditions", "[end] does not say that anything is given there");
@@ -188,8 +194,54 @@ void read_boundary(Builder& builder, Conditions& boundary)
         const Value* name = body.find("name");
         if (name == nullptr || !builder.bodies()[name->text].is_usable) continue;   // told already
         for (const Section& at_end : body.sections("end"))
-            read_pose_of(builder, name->text, at_end, "end", boundary.end);
+            read_pose_of(builder, name->text, at_end, "end", end);
     }
+}
+
+namespace {
+
+/// Joints that have let go by then, or begin later, need not be closed at this end.
+Model acting_then(const Model& model, const State& state)
+{
+    return model.has_events() ? acting_at(model, state.t).model : model;
+}
+
+/// Nobody stands beyond a limit: its spring would throw the joint back.
+void refuse_beyond_limits(const Model& model, const State& state)
+{
+    constexpr double slack = 1e-9;   // m or rad, for limits that are where the joint stands
+    for (const Load& load : model.loads()) {
+        const auto beyond = std::ranges::find(load.readings, "penetration", &LoadReading::name);
+        if (beyond == load.readings.end()) continue;
+        const double d = beyond->value(load_arguments(load, {state.t, Side::right}, state.X, state.V));
+        if (d > slack)
+            throw InputError({"joint-limits", "load[" + load.name + "].limits",
+                              "'" + load.name + "' begins beyond its limits",
+                              "by " + to_text(d, 4) + " " + beyond->unit, "", "",
+                              "place its bodies between them, or state by 'coordinate' what is meant"});
+    }
+}
+
+}   // namespace
+
+void start_as_driven(Builder& builder, Scenario& scenario)
+{
+    const Section* const start = only_section(builder.run(), "start");
+    if (!builder.model().has_drives() || scenario.conditions.at_start != Known::state) return;
+    if (start != nullptr && start->has("initial")) return;
+    const State& at_rest = scenario.conditions.start;
+    const Model model = acting_then(builder.model(), at_rest);
+    const TriedStart tried = scenario.prepared->try_close(model, at_rest, StartPolicy::check);
+    if (tried.closed || tried.why.code != "start-velocity") return;
+    scenario.options.initial = StartPolicy::project;
+    if (!scenario.prepared->try_close(model, at_rest, StartPolicy::project).closed) return;
+    const std::string name = tried.why.path.substr(tried.why.path.find('['));   // "[motor]"
+    builder.findings().warning(
+        builder.find_place(tried.why.path, ""), "start-driven",
+        "no initial velocities are given, and the drive '" + name.substr(1, name.size() - 2) +
+            "' is moving at the start: the bodies start with velocities that fit it",
+        {"of all that fit, those of least kinetic energy, as initial = \"project\" in [start] takes them",
+         "write initial = \"project\", or give velocities (\"rate\" of a joint moves all that hangs on it)"});
 }
 
 void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy, Prepared& prepared)
@@ -199,12 +251,11 @@ void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy
         // Velocities that are not stated are guesses of Newton's iteration, which joints must not refuse.
         if (given == Known::positions)
             for (Matrix34& V : state.V) V = {};   // a guess, which need not fit
-        // Joints that have let go by then, or begin later, need not be closed at this end.
-        const Model model =
-            builder.model().has_events() ? acting_at(builder.model(), state.t).model : builder.model();
+        const Model model = acting_then(builder.model(), state);
         const ConsistentStart closed = prepared.close(model, state, policy);
         // A state at a singular position is judged besides (theory.md, Singular positions).
         if (given == Known::state) refuse_singular_start(model, closed);
+        refuse_beyond_limits(model, closed.start);
     };
     builder.guard("start", [&] { close(boundary.start, boundary.at_start); });
     builder.guard("end", [&] {

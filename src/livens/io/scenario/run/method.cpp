@@ -72,15 +72,18 @@ std::vector<Key> mixed_keys()
         basis(),
         choice<Mixed::Start>(
             "momentum",
-            "How the momentum enters at the ends. natural: as the boundary term of Hamilton's law, which "
-            "satisfies the momentum balances to rounding; strong: as a value of the momentum field."),
+            "How the momenta at both ends of time enter the equations. natural: in the boundary terms of "
+            "Hamilton's law, so that momentum and angular momentum balance to rounding; strong: as "
+            "prescribed values of the momentum field, which loses angular momentum."),
         choice<Mixed::Multipliers>(
             "multipliers",
             "Basis functions of the multipliers. equal: those of the positions; lower: one degree less."),
         choice<Mixed::EndMultiplier>(
-            "end_multiplier", "With natural momentum and equal multipliers, the multiplier at an end is not "
-                              "determined by the equations. smooth: its field has one degree less in that "
-                              "element; zero: it is zero, which limits the order to 4 for any degree."),
+            "end_multiplier",
+            "With natural momentum and equal multipliers, no equation determines the last value of a "
+            "multiplier, where the motion ends. smooth: it continues the other values of its element, as a "
+            "polynomial of one degree less; zero: it is zero, which limits the order of the whole motion to "
+            "4, whatever the degree."),
         Key{"gauss_points", types::integer,
             "Number of Gauss points per element. Default: enough to integrate all polynomials exactly."}
             .within({1, 64}),
@@ -172,10 +175,11 @@ const std::vector<OptionKey>& option_keys()
 {
     static const std::vector<OptionKey> all{
         {Key{"tolerance", types::number,
-             "Newton's iteration stops when its estimated error is below this fraction of the motion within "
-             "the element (mixed: of the model length). lobatto and radau use 1e-10 at most, unless "
-             "`estimate` is \"none\" and `growth` is off. With an accuracy from 1e-9 to 1e-8 they use 1e-15 "
-             "at most, with a smaller accuracy likewise from the second try on.",
+             "When Newton's iteration stops: when what it still has to correct is estimated to be less than "
+             "this part of how far the bodies move within the element (mixed: of the model length). Larger "
+             "values than 1e-10 count as 1e-10 in lobatto and radau, because the error estimate needs it "
+             "(unless `estimate` is \"none\" and `growth` false). An `accuracy` of 1e-8 or less lowers it to "
+             "1e-15; below 1e-9 only if the first try was not accurate enough.",
              "", "1e-14"}
              .within({0, 0.1, true}),
          &SolveOptions::tolerance},
@@ -185,18 +189,21 @@ const std::vector<OptionKey>& option_keys()
          &SolveOptions::max_iterations},
         {choice<SolveOptions::Estimate>(
              "estimate",
-             "Estimate of the error of the motion. second: the distance from a second solution on the same "
-             "elements, of degree + 1 (lobatto from degree 4: + 2 under loads and drives, or on elements "
-             "that barely resolve the motion; mixed: lobatto of degree + 2; midpoint: lobatto of degree 3; "
-             "endpoint: radau of degree 3). local: the local errors of the elements, amplified as two "
-             "neighbouring motions separate; for lobatto and radau with `elements`, a given initial state "
-             "and no loads but those that depend on time alone; often ten times too large, and without "
+             "How the error of the motion is estimated. second: everything is solved once more on the same "
+             "elements by a method of higher order, and the distance of the two motions is the estimate. "
+             "That method has degree + 1; lobatto from degree 4 on takes degree + 2 under loads and drives, "
+             "or where elements barely resolve the motion; mixed is compared with lobatto of degree + 2, "
+             "midpoint with lobatto and endpoint with radau of degree 3. local: the error that each element "
+             "adds is estimated and carried on to later times by as much as neighbouring motions separate. "
+             "It is for lobatto and radau with `elements`, from a given initial state, under no loads but "
+             "those that depend on time alone; it is often ten times too large and tells nothing of "
              "velocities and reactions. none: no estimate."),
          &SolveOptions::estimate},
         {Key{"growth", types::truth,
-             "Whether to measure, from neighbouring motions, how initial perturbations grow, and to report "
-             "the horizon beyond which double precision cannot predict the motion. Costs half as much as the "
-             "motion, or up to three times as much where bodies turn over. Default: true with `accuracy` of "
+             "Whether to measure how a small change of the initial state grows, by motions that begin beside "
+             "this one. From it follows the horizon: the time after which rounding errors, which no computer "
+             "avoids, have grown so large that the motion is one of many. Costs half as much as the motion, "
+             "or up to three times as much where bodies turn over. Default: true with `accuracy` of "
              "`[time]`, else false."},
          &SolveOptions::growth},
         {Key{"looks", types::truth,

@@ -8,11 +8,10 @@
 
 namespace livens::inline io_internal {
 
-namespace {
-
-std::string resolve(const Builder& builder, const Section& time, const Scenario& scenario)
+std::string resolved_run(const Builder& builder, const Scenario& scenario)
 {
-    const Vector3 gravity = builder.top().vector("gravity");
+    const Section& time = *only_section(builder.run(), "time");
+    const Vector3 gravity = builder.run().vector("gravity");
     const SolveOptions& options = scenario.options;
     JsonWriter json;
     json.begin_object().member("format", 1).member("title", scenario.title);
@@ -47,6 +46,8 @@ std::string resolve(const Builder& builder, const Section& time, const Scenario&
     return json.end_object().text();
 }
 
+namespace {
+
 /// What is not stated follows from the accuracy.
 void leave_open(Method& method, bool has_family, bool has_degree)
 {
@@ -63,9 +64,9 @@ void leave_open(Method& method, bool has_family, bool has_degree)
 /// Complaints about what the file leaves to its defaults point at what comes nearest.
 void remember_defaults(Builder& builder)
 {
-    const Section* time = only_section(builder.top(), "time");
-    const Section* start = only_section(builder.top(), "start");
-    const Section* end = only_section(builder.top(), "end");
+    const Section* time = only_section(builder.run(), "time");
+    const Section* start = only_section(builder.run(), "start");
+    const Section* end = only_section(builder.run(), "end");
     // A complaint about a table that the file does not have points at the condition that asks for it.
     if (end != nullptr) {
         if (start == nullptr) builder.remember("start", end->place("given"));
@@ -81,9 +82,9 @@ void remember_defaults(Builder& builder)
 
 void read_run(Builder& builder, Scenario& scenario)
 {
-    const Section* time = only_section(builder.top(), "time");
-    const Section* method = only_section(builder.top(), "method");
-    const Section* start = only_section(builder.top(), "start");
+    const Section* time = only_section(builder.run(), "time");
+    const Section* method = only_section(builder.run(), "method");
+    const Section* start = only_section(builder.run(), "start");
     scenario.title = builder.top().text("title");
     scenario.method = read_method(method, builder.findings());
     const bool is_to_accuracy = time != nullptr && follows_accuracy(*time, scenario.method);
@@ -96,9 +97,7 @@ void read_run(Builder& builder, Scenario& scenario)
     if (time != nullptr) scenario.options.end_at_bends = time->text("breaks") != "ignore";
     read_boundary(builder, scenario.conditions);
     remember_defaults(builder);
-    if (time == nullptr) return;
-    if (!read_time(builder, *time, method, scenario)) return;
-    scenario.resolved = resolve(builder, *time, scenario);
+    if (time != nullptr) read_time(builder, *time, method, scenario);
 }
 
 }   // namespace livens::inline io_internal

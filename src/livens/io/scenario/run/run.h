@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "livens/dynamics/start/start_coordinates.h"
 #include "livens/io/scenario/builder.h"
 
 namespace livens {
@@ -16,10 +17,26 @@ namespace livens::inline io_internal {
 void read_pose_of(Builder& builder, const std::string& name, const Section& pose, const std::string& when,
                   State& state);
 
-/// Leads the bodies to what [start] and joints say of coordinates: after the joints, before all others.
-void move_bodies(Builder& builder);
-/// What is given at both ends, and the state at the end. The state at the start is the model's.
-void read_boundary(Builder& builder, Conditions& boundary);
+/// What bodies and joints say of the start.
+struct StatedStart {
+    std::vector<StartCoordinate> rates;         ///< of joints
+    State state;                                ///< bodies where [body.start] has them
+    bool is_other = false;                      ///< it has some
+    std::vector<StatedVelocity> velocities{};   ///< of bodies, be they zero
+};
+/// Where nothing was wrong so far.
+StatedStart stated_start(Builder& builder);
+/// Whether this file gives a velocity at the start to a body or a joint, be it zero.
+bool states_velocity(const Builder& builder);
+/// Leads the bodies there, and to what [start] says of coordinates: after the joints, before all others.
+void move_bodies(Builder& builder, const StatedStart& stated);
+/// What is given at both ends, but for the state at the end. The state at the start is the model's.
+void read_boundary(const Builder& builder, Conditions& boundary);
+/// Bodies at the end of time, of which something is given or not.
+void read_body_ends(Builder& builder, bool is_given, State& end);
+/// Lets a start without any velocity be projected, with a warning, where drives ask for some and nothing else
+/// is wrong with it; [start] may say otherwise.
+void start_as_driven(Builder& builder, Scenario& scenario);
 /// Closes the mechanism where something is given, as solve() will.
 void check_ends(Builder& builder, const Conditions& boundary, StartPolicy policy, Prepared& prepared);
 Method read_method(const Section* section, Findings& findings);
@@ -29,6 +46,8 @@ void read_options(const Section& section, SolveOptions& options);
 void write_options(JsonWriter& json, const SolveOptions& options);
 /// Time, method, conditions: everything of the scenario but the model.
 void read_run(Builder& builder, Scenario& scenario);
+/// The same as JSON, with all defaults filled in.
+std::string resolved_run(const Builder& builder, const Scenario& scenario);
 
 /// Elements and output times. False after an error.
 bool read_time(Builder& builder, const Section& time, const Section* method, Scenario& scenario);

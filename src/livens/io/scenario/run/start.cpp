@@ -44,17 +44,11 @@ StartCoordinate read_coordinate(const Builder& builder, const Section& section, 
     return wanted;
 }
 
-/// What is wanted, place by place; false after an error.
+/// What [start] wants, place by place; false after an error.
 bool read_wanted(Builder& builder, std::vector<StartCoordinate>& wanted)
 {
     const int before = builder.findings().n_errors();
-    for (const Section& joint : builder.top().sections("joint")) {
-        if (joint.find("rate") == nullptr) continue;
-        const std::string name = joint.has("name") ? joint.text("name") : default_name(joint);
-        wanted.push_back(
-            {builder.model().find_joint(name), 0, {}, joint.number("rate"), "joint[" + name + "].rate"});
-    }
-    const Section* start = only_section(builder.top(), "start");
+    const Section* start = only_section(builder.run(), "start");
     if (start == nullptr) return true;
     int n = 0;
     for (const Section& section : start->sections("coordinates")) {
@@ -66,19 +60,9 @@ bool read_wanted(Builder& builder, std::vector<StartCoordinate>& wanted)
     return builder.findings().n_errors() == before;
 }
 
-/// Bodies where [body.start] has them; false after an error. Of `wanted` goes what tells turns alone.
-bool restate_bodies(Builder& builder, std::vector<StartCoordinate>& wanted)
+/// Bodies where [body.start] has them. Of `wanted` goes what tells turns alone.
+void restate_bodies(Builder& builder, const State& state, std::vector<StartCoordinate>& wanted)
 {
-    const int before = builder.findings().n_errors();
-    State state = builder.model().start();
-    bool is_other = false;
-    for (const Section& body : builder.top().sections("body"))
-        for (const Section& start : body.sections("start")) {
-            read_pose_of(builder, body.text("name"), start, "start", state);
-            is_other = true;
-        }
-    if (builder.findings().n_errors() > before) return false;
-    if (!is_other) return true;
     // Joints keep their frames, which refer to the bodies as stated; the bodies move.
     builder.model() = restated(builder.model(), state, wanted);
     std::erase_if(wanted, [&](const StartCoordinate& one) {
@@ -87,28 +71,75 @@ bool restate_bodies(Builder& builder, std::vector<StartCoordinate>& wanted)
         // Where the joint stands there already, the value has told its turns, and nothing is left to lead to.
         return !one.rate && std::abs(*one.value - now) <= same_angle;
     });
-    return true;
 }
 
 }   // namespace
 
-void move_bodies(Builder& builder)
+namespace {
+
+/// A section of a body that gives its angular velocity.
+bool turns(const Section& body)
+{
+    return body.has("angular_velocity") || body.has("angular_velocity_body") || body.has("director_rates");
+}
+
+}   // namespace
+
+StatedStart stated_start(Builder& builder)
+{
+    StatedStart stated{{}, builder.model().start()};
+    for (const Section& joint : builder.top().sections("joint")) {
+        if (joint.find("rate") == nullptr) continue;
+        const std::string name = joint.has("name") ? joint.text("name") : default_name(joint);
+        stated.rates.push_back(
+            {builder.model().find_joint(name), 0, {}, joint.number("rate"), "joint[" + name + "].rate"});
+    }
+    for (const Section& body : builder.top().sections("body")) {
+        StatedVelocity said{builder.model().find_body(body.text("name")), body.has("velocity"), turns(body)};
+        for (const Section& start : body.sections("start")) {
+            read_pose_of(builder, body.text("name"), start, "start", stated.state);
+            stated.is_other = true;
+            said.of_place |= start.has("velocity");
+            said.of_turn |= turns(start);
+        }
+        if (said.of_place || said.of_turn) stated.velocities.push_back(said);
+    }
+    return stated;
+}
+
+bool states_velocity(const Builder& builder)
+{
+    const auto moves = [](const Section& section) {
+        return section.has("velocity") || section.has("rate") || turns(section);
+    };
+    const Section& top = builder.top();
+    const Section* start = only_section(builder.run(), "start");
+    return std::ranges::any_of(top.sections("joint"), moves) ||
+           std::ranges::any_of(top.sections("body"),
+                               [&](const Section& body) {
+                                   return moves(body) || std::ranges::any_of(body.sections("start"), moves);
+                               }) ||
+           (start != nullptr && std::ranges::any_of(start->sections("coordinates"), moves));
+}
+
+void move_bodies(Builder& builder, const StatedStart& stated)
 {
     if (builder.findings().n_errors() > 0) return;
-    std::vector<StartCoordinate> wanted;
-    if (!read_wanted(builder, wanted) || !restate_bodies(builder, wanted) || wanted.empty()) return;
-    const Section* start = only_section(builder.top(), "start");
-    const Section* time = only_section(builder.top(), "time");
+    std::vector<StartCoordinate> wanted = stated.rates;
+    if (!read_wanted(builder, wanted)) return;
+    if (stated.is_other) restate_bodies(builder, stated.state, wanted);
+    if (wanted.empty()) return;
+    const Section* start = only_section(builder.run(), "start");
+    const Section* time = only_section(builder.run(), "time");
     const bool projects = start != nullptr && start->text("initial") == "project";
     builder.guard("start", [&] {
         MovedStart moved =
             move_start(builder.model(), wanted, projects ? StartPolicy::project : StartPolicy::check,
-                       time == nullptr ? 0 : time->number("start"));
+                       time == nullptr ? 0 : time->number("start"), stated.velocities);
         builder.model() = std::move(moved.model);
         for (const std::string& change : moved.changed)
             builder.findings().warning(start == nullptr ? SourceLocation{} : start->place(), "start-changed",
-                                       change,
-                                       {"", "leave these velocities out, or give ones that fit"});
+                                       change, {"", "leave these velocities out, or give ones that fit"});
     });
 }
 

@@ -22,16 +22,19 @@ constexpr std::string_view no_step = "no step size is needed: `accuracy` chooses
 constexpr std::string_view orientation =
     "an orientation is one of rotation_vector = [\"0 deg\", \"30 deg\", \"0 deg\"] (axis times angle), "
     "quaternion = [w, x, y, z] and directors = [d1, d2, d3] (the columns of the rotation matrix)";
-constexpr std::string_view own_load = "a joint has none of its own; it is a load on the joint: [[load]] with "
-                                      "type = \"spring\", joint = \"@\" and "
-                                      "'stiffness' or 'damping'";
+constexpr std::string_view own_load =
+    "this joint has no coordinate of its own to act along; between its bodies a [[load]] acts, of type "
+    "\"spring\" between two points or \"bushing\"";
+constexpr std::string_view along_which =
+    "it has two coordinates: say along which, as in angle = { damping = 0.1 } or displacement = { stiffness "
+    "= 100, rest = 0.2 }";
 constexpr std::string_view stop =
     "joint limits are a stop of your own: [[load]] with type = \"actuator\", joint = \"@\", "
     "inputs = { q = \"@.%\" } and expression = \"-1e4*max(q - 1, 0) - 1e4*min(q + 1, 0)\"";
 constexpr std::string_view friction =
     "friction is a load on the joint: [[load]] with type = \"actuator\", joint = \"@\", "
-    "inputs = { w = \"@.%_rate\" } and expression = \"-0.1*tanh(w/0.01)\"; viscous: type = \"spring\" with "
-    "'damping'";
+    "inputs = { w = \"@.%_rate\" } and expression = \"-0.1*tanh(w/0.01)\"; viscous: 'damping' of the joint "
+    "itself";
 constexpr std::string_view motor = "a motor of known motion is a [[drive]] with type = \"joint\", joint = "
                                    "\"@\" and 'rate', 'step' or 'expression'; "
                                    "of known torque, a [[load]] with type = \"actuator\" and joint = \"@\"";
@@ -51,6 +54,10 @@ constexpr std::string_view free_length = "its length without force is 'free_leng
 constexpr std::string_view no_contact =
     "there is no contact between bodies; a floor or stop is a load whose expression holds max(..), as in "
     "expression = \"1e4*max(-z, 0)\" of a point sensor's z";
+constexpr std::string_view along_words =
+    "damping stiffness rest d c b k spring springstiffness springconstant springrate jointstiffness "
+    "viscousdamping viscousfriction dampingcoefficient jointdamping damper dashpot springref springreference "
+    "restangle springdamper dynamics compliance";
 constexpr std::string_view two_bodies =
     "the bodies are between = [\"world\", \"arm\"]: the first one carries the second";
 constexpr std::string_view of_body = "forces are [[load]] tables with body = \"@\"";
@@ -145,15 +152,29 @@ constexpr OtherKey other_keys[] = {
      "predecessor successor i j first second frame1 frame2 connects",
      "between", two_bodies},
     {"[[joint]]", "",
+     "limit range lower upper min max stop stops jointlimits lowerlimit upperlimit limited hardstop "
+     "jointrange",
+     "limits", "limits = [\"-90 deg\", \"90 deg\"], of the coordinate; beyond them acts a stiff spring"},
+    {"[[joint]]", "", "armature rotor reflectedinertia motorinertia gearedinertia", "",
+     "a point of this mass on a line of the world, bound to the joint by a \"rack_and_pinion\" of radius 1, "
+     "has this effect: docs/howto/motors.md"},
+    {"[[joint]]", "", "limitspring limitk stopstiffness contactstiffness", "limit_stiffness"},
+    {"[[joint]]", "", "limitc stopdamping contactdamping dissipation", "limit_damping"},
+    {"[[joint]]", "",
      "limits limit range lower upper min max stop stops jointlimits lowerlimit upperlimit limited hardstop",
      "", stop},
     {"[[joint]]", "", "friction coulomb frictionloss mu coulombfriction stiction frictioncoefficient", "",
      friction},
     {"[[joint]]", "",
-     "damping stiffness d c k spring springstiffness viscousdamping viscousfriction dampingcoefficient "
-     "springref "
-     "springdamper dynamics compliance",
-     "", own_load},
+     "d c b viscousdamping viscousfriction dampingcoefficient jointdamping damper dashpot springdamper "
+     "dynamics",
+     "damping"},
+    {"[[joint]]", "", "k spring springstiffness springconstant springrate jointstiffness compliance",
+     "stiffness"},
+    {"[[joint]]", "", "springref springreference restangle neutral equilibrium", "rest"},
+    {"[[joint]]", "cylindrical", along_words, "", along_which},
+    {"[[joint]]", "screw", along_words, "", along_which},
+    {"[[joint]]", "", along_words, "", own_load},
     {"[[joint]]", "",
      "motor drive actuator actuation torque force effort speed velocity omega rpm motion control servo", "",
      motor},

@@ -14,7 +14,7 @@ namespace livens::inline io_internal {
 
 namespace {
 
-constexpr std::string_view copied_kinds[] = {"body", "joint", "drive", "load", "sensor"};
+constexpr std::string_view copied_kinds[] = {"body", "point", "include", "joint", "drive", "load", "sensor"};
 
 bool continues_word(char c) { return is_plain_name("_" + std::string(1, c)); }
 
@@ -28,7 +28,8 @@ bool is_numeric(Form form)
 
 Role role_of(const Key* key, bool is_in_list)
 {
-    if (key == nullptr) return Role::word;
+    if (key == nullptr || (!is_in_list && key->type.other == Form::text))
+        return Role::word;   // names of points
     if (key->name == "expression" || key->name == "density_field") return Role::formula;
     const bool is_listed = is_in_list && is_numeric(key->type.other);
     return is_numeric(key->type.form) || is_listed ? Role::number : Role::word;
@@ -56,7 +57,10 @@ public:
         if (from.content == nullptr) return to;
         to.content = std::make_unique<NodeContent>();
         if (from.kind == Node::Kind::text) to.content->text = text(from, role_of(key, is_in_list));
-        for (const Node& item : from.items()) to.content->items.push_back(node(item, key, table, true));
+        const bool has_names = key != nullptr && key->type == types::two_points && !from.items().empty() &&
+                               from.items().front().kind == Node::Kind::text;
+        for (const Node& item : from.items())
+            to.content->items.push_back(node(item, has_names ? nullptr : key, table, true));
         for (const Entry& entry : from.entries()) {
             const Key* inside = table == nullptr ? nullptr : find_key(table->keys_of(any_kind), entry.key);
             const Table* child = inside == nullptr ? nullptr : inside->child.get();

@@ -55,6 +55,8 @@ Table repeat_table()
          Key{"count", types::integer, "Number of copies."}.needed().within({1, max_bodies}),
          Key{"first", types::integer, "First value of the index.", "", "1"}.within({-1000000, 1000000}),
          Key{"body", types::templates, "Repeated bodies: `[[repeat.body]]`."},
+         Key{"point", types::templates, "Repeated points: `[[repeat.point]]`."},
+         Key{"include", types::templates, "Repeated includes: `[[repeat.include]]`."},
          Key{"joint", types::templates, "Repeated joints: `[[repeat.joint]]`."},
          Key{"drive", types::templates, "Repeated drives: `[[repeat.drive]]`."},
          Key{"load", types::templates, "Repeated loads: `[[repeat.load]]`."},
@@ -91,9 +93,14 @@ const Table& root_table()
          Key{"parameters", types::named_numbers,
              "Named numbers: each is a number, a string with a unit, or an expression of other parameters; "
              "see [parameters](#parameters)."},
-         Key{"body", types::tables, "Bodies, at least one."}.needed().holding(body_table()),
+         Key{"body", types::tables, "Bodies, at least one, here or in an included file."}
+             .needed_without("include")
+             .holding(body_table()),
          Key{"world", types::table, "Shapes drawn in the world; they have no effect on the motion."}.holding(
              world_table()),
+         Key{"point", types::tables, "Named points of bodies or of the world."}.holding(point_table()),
+         Key{"include", types::tables, "Other files, included as parts of this model."}.holding(
+             include_table()),
          Key{"joint", types::tables, "Joints between two bodies, or between a body and the world."}.holding(
              joint_table()),
          Key{"drive", types::tables,
@@ -109,6 +116,16 @@ const Table& root_table()
          Key{"method", types::table, "Integration method and its options."}.holding(method_table()),
          Key{"start", types::table, "Initial conditions."}.holding(start_table()),
          Key{"end", types::table, "Conditions at the final time."}.holding(end_table())}};
+    return table;
+}
+
+const Table& part_table()
+{
+    static const Table table = [] {
+        Table part = root_table();
+        for (Key& key : part.keys) key.required = false;
+        return part;
+    }();
     return table;
 }
 

@@ -26,9 +26,10 @@ enum class Form : std::uint8_t {
     row,           ///< `count` numbers
     rows,          ///< `count` rows of 3 numbers
     table,
-    tables,         ///< array of tables
-    templates,      ///< array of tables of the root's key of that name, with braces: see without_repeats()
-    named_numbers   ///< a table of numbers and expressions under names of the user's choice: see Parameters
+    tables,          ///< array of tables
+    templates,       ///< array of tables of the root's key of that name, with braces: see without_repeats()
+    named_numbers,   ///< a table of numbers and expressions under names of the user's choice: see Parameters
+    model            ///< a table that holds what a file would, read by itself
 };
 
 struct KeyType {
@@ -48,12 +49,16 @@ inline constexpr KeyType integer_or_choice{"a whole number", Form::integer, 0, F
 inline constexpr KeyType number{"a number", Form::number};
 inline constexpr KeyType text{"a string", Form::text};
 inline constexpr KeyType choice{"", Form::choice};
+inline constexpr KeyType interval{"two numbers", Form::row, 2};
 inline constexpr KeyType vector3{"three numbers", Form::row, 3};
 inline constexpr KeyType vector4{"four numbers", Form::row, 4};
 inline constexpr KeyType principal_or_full{"three numbers or three rows of three numbers", Form::row, 3,
                                            Form::rows};
 inline constexpr KeyType triple{"three rows of three numbers", Form::rows, 3};
 inline constexpr KeyType pair{"two rows of three numbers", Form::rows, 2};
+inline constexpr KeyType point{"the name of a point or three numbers", Form::row, 3, Form::text};
+inline constexpr KeyType two_points{"two names of points or two rows of three numbers", Form::rows, 2,
+                                    Form::names};
 inline constexpr KeyType names{"two strings", Form::names, 2};
 inline constexpr KeyType text_or_list{"a string or a list of strings", Form::text, 0, Form::names};
 inline constexpr KeyType named_texts{"a table of strings", Form::named_texts};
@@ -63,6 +68,7 @@ inline constexpr KeyType rows{"rows of three numbers", Form::rows};
 inline constexpr KeyType number_or_list{"a number or a list of numbers", Form::number, 0, Form::row};
 inline constexpr KeyType number_or_table{"a number or a table", Form::number, 0, Form::table};
 inline constexpr KeyType table{"a table", Form::table};
+inline constexpr KeyType model{"a table", Form::model};
 inline constexpr KeyType tables{"tables", Form::tables};
 inline constexpr KeyType templates{"tables", Form::templates};
 inline constexpr KeyType table_or_tables{"a table or a list of tables", Form::table, 0, Form::tables};
@@ -87,6 +93,13 @@ inline constexpr Range not_negative{.low = 0};
 using Words = std::vector<std::string_view>;
 struct Table;
 
+// What names of points need not repeat.
+inline constexpr const char* two_bodies_or_points = "Names of two different bodies, first and second; one of "
+                                                    "them may be `\"world\"`. Not needed with names of "
+                                                    "points in `points`.";
+inline constexpr const char* body_or_point =
+    "Name of the body. Not needed with the name of a point in `point`.";
+
 inline constexpr std::string_view formulas_for_value =
     "a formula is given as 'expression', instead of 'value'";
 
@@ -102,6 +115,8 @@ struct Key {
     std::string_view other_unit = {};   ///< SI; what texts may have instead, along angles
     std::shared_ptr<const Table> child = {};   ///< of a table, or tables
     std::string_view formulas = {};            ///< where formulas stand instead; empty: nowhere
+    std::string_view told_by = {};   ///< key of points or files that may say it as well; empty: none
+    bool may_be_infinite = false;   ///< inf and -inf are numbers of it
     /// SI, where the numbers of a list differ: of a matrix row by row, whose diagonal may stand alone.
     Words units = {};
 
@@ -110,7 +125,12 @@ struct Key {
     Key each_in(Words u) && { return units = std::move(u), std::move(*this); }
     Key or_in(std::string_view u) && { return other_unit = u, std::move(*this); }
     Key or_formulas(std::string_view where) && { return formulas = where, std::move(*this); }
+    Key or_infinite() && { return may_be_infinite = true, std::move(*this); }
     Key within(const Range& r) && { return range = r, std::move(*this); }
+    Key needed_without(std::string_view other) &&
+    {
+        return required = true, told_by = other, std::move(*this);
+    }
     Key holding(Table t) &&;
 
     bool takes_units() const { return !unit.empty() || !units.empty(); }
@@ -151,6 +171,7 @@ Key choice(std::string_view name, const std::string& doc)
 
 inline constexpr int max_elements = 10'000'000;
 inline constexpr int max_bodies = 10000;
+inline constexpr int max_includes = 1000, max_include_depth = 8;
 
 // Made once, for root_table(), which holds all others.
 Table body_table();
@@ -159,11 +180,15 @@ Table joint_table();
 Table drive_table();
 Table load_table();
 Table sensor_table();
+Table point_table();
+Table include_table();
 Table start_table();
 Table end_table();
 Table method_table();
 Table repeat_table();
 const Table& root_table();
+/// The same of what is included, where nothing is needed.
+const Table& part_table();
 /// All, from the root on, each before those inside it.
 std::vector<const Table*> schema_tables();
 

@@ -71,6 +71,7 @@ std::vector<std::string_view> types_of(Form form)
     case Form::named_texts:
     case Form::named_numbers:
     case Form::table:
+    case Form::model:
         return {"object"};
     case Form::none:
         break;
@@ -192,10 +193,12 @@ void write_type(JsonWriter& json, const Key& key)
 
 void write_required(JsonWriter& json, const std::vector<Key>& keys)
 {
-    if (std::ranges::none_of(keys, &Key::required)) return;
+    // What the names of points may say instead is for the reader to check.
+    const auto is_needed = [](const Key& key) { return key.required && key.told_by.empty(); };
+    if (std::ranges::none_of(keys, is_needed)) return;
     json.key("required").begin_array();
     for (const Key& key : keys)
-        if (key.required) json.value(key.name);
+        if (is_needed(key)) json.value(key.name);
     json.end_array();
 }
 

@@ -160,7 +160,7 @@ an angle if the coordinate is an angle, and a length if it is a displacement: `r
   are exact (NIST SP 811).
 - Products are written with a blank, `*` or `·`, powers with `^`. A slash is followed by one factor or by
   parentheses: `kg/(m s)`. `J/kg m` is ambiguous and therefore an error.
-- Every number must be finite.
+- Every number must be finite, except limits of joints, where `inf` and `-inf` mean no limit.
 
 ## Parameters
 

@@ -41,6 +41,7 @@ Section::Section(const Node& node, const Table& table, std::string label, Findin
     for (std::size_t i = 0; i < n_known; ++i) {
         const Key& key = *keys[i];
         if (!key.required || node.find(key.name) != nullptr || is_meant(key.name)) continue;
+        if (is_told_otherwise(key, node)) continue;
         const std::string name = "'" + std::string(key.name) + "'";
         findings.error(
             &table == &root_table() ? SourceLocation{1, 1, 1} : node.place, "missing-key",
@@ -92,7 +93,7 @@ SourceLocation Section::place(std::string_view key) const
 std::vector<double> Section::numbers(std::string_view key) const
 {
     if (const Value* v = find(key)) return v->numbers;
-    const Key* k = schema_key(key);
+    const Key* k = key_of(key);
     return k != nullptr ? fallback_numbers(*k) : std::vector<double>();
 }
 
@@ -105,7 +106,7 @@ double Section::number(std::string_view key) const
 std::string Section::text(std::string_view key) const
 {
     if (const Value* v = find(key)) return v->text;
-    const Key* k = schema_key(key);
+    const Key* k = key_of(key);
     return k != nullptr ? std::string(k->fallback) : std::string();
 }
 

@@ -50,7 +50,9 @@ public:
     /// if there is none.
     int kind() const { return kind_; }
     /// Whether its kind has the key, given or not.
-    bool takes(std::string_view key) const { return schema_key(key) != nullptr; }
+    bool takes(std::string_view key) const { return key_of(key) != nullptr; }
+    /// The schema's entry for a key of its kind; null: it has none.
+    const Key* key_of(std::string_view key) const { return find_key(table_->keys_of(kind_), key); }
 
     /// The key stands in the file, in order or not, or another word that means it.
     bool has(std::string_view key) const { return value(key) != nullptr || is_meant(key); }
@@ -72,9 +74,19 @@ public:
     template <class Enum>
     Enum pick(std::string_view key) const
     {
-        return static_cast<Enum>(index_of(schema_key(key)->choices, text(key)));
+        return static_cast<Enum>(index_of(key_of(key)->choices, text(key)));
     }
     std::span<const Section> sections(std::string_view key) const;
+
+    std::span<Section> sections(std::string_view key);
+    // What the names of points stand for, once bodies are known.
+    /// Numbers take the place of names.
+    void tell(std::string_view key, const std::vector<double>& numbers);
+    /// Texts of a key that is not there, whose places are those of another value.
+    void imply(std::string_view key, const std::vector<std::string>& texts, const Value& told_by);
+    /// Of a key that imply() has put there.
+    bool is_implied(std::string_view key) const;
+    void spoil() { is_valid_ = false; }
 
     /// All keys with values, for the table of places.
     const std::vector<Value>& values() const { return values_; }
@@ -90,7 +102,6 @@ public:
 
 private:
     const Value* value(std::string_view key) const;
-    const Key* schema_key(std::string_view key) const { return find_key(table_->keys_of(kind_), key); }
     std::vector<double> numbers(std::string_view key) const;
     void read(const Entry& entry, const std::vector<const Key*>& keys);
     void report_unknown(const Entry& entry, const std::vector<const Key*>& keys);
@@ -106,6 +117,9 @@ private:
     Words meant_;   ///< keys that unknown ones stand for: what lacks them has been told of
     bool is_valid_ = true;
 };
+
+/// Whether names of points stand where they say a body, or two; or files that may have what is needed.
+bool is_told_otherwise(const Key& key, const Node& node);
 
 /// The table `key` of a section; null if it is not there.
 inline const Section* only_section(const Section& section, std::string_view key)

@@ -36,8 +36,13 @@ private:
         switch (key_.type.other) {
         case Form::choice:
             return node.kind == NodeKind::text && index_of(key_.choices, node.text()) >= 0;
-        case Form::row:
+        case Form::text:
+            return node.kind == NodeKind::text;
         case Form::names:
+            return node.kind == NodeKind::array &&
+                   (key_.type.form != Form::rows ||
+                    (!node.items().empty() && node.items().front().kind == NodeKind::text));
+        case Form::row:
         case Form::tables:
             return node.kind == NodeKind::array;
         case Form::rows:
@@ -74,6 +79,7 @@ private:
             return read_row(node, key_.type.count);
         case Form::rows:
             return read_each(node, key_.type.count, [&](const Node& item) { return read_row(item, 3); });
+        case Form::model:
         case Form::named_numbers:
             return node.kind == NodeKind::table || wrong_type(node);   // what is in it was read before
         case Form::templates:
@@ -117,7 +123,8 @@ private:
     bool read_number(const Node& node)
     {
         if (node.kind == NodeKind::integer || node.kind == NodeKind::number) {
-            if (std::isfinite(node.number)) return accept(node, node.number);
+            if (std::isfinite(node.number) || (key_.may_be_infinite && !std::isnan(node.number)))
+                return accept(node, node.number);
             return findings_.error(node.place, "not-finite",
                                    subject() + " must be finite, not " + to_text(node.number));
         }

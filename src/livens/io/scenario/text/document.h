@@ -61,5 +61,7 @@ bool scan(std::string_view text, Findings& findings);
 /// The tree of a text that scan() has passed; empty after a syntax error, of which the parser finds the first
 /// only.
 std::optional<Node> parse_toml(std::string_view text, Findings& findings);
+/// All places of a tree are in a file that Findings::add_file() knows.
+void place_in(Node& node, int file);
 
 }   // namespace livens::inline io_internal

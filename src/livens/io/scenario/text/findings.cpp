@@ -40,13 +40,27 @@ int distance(std::string_view a, std::string_view b)
 
 }   // namespace
 
+std::string_view find_line(std::string_view source, int line)
+{
+    // A mark of the byte order counts as no column, as in editors.
+    if (source.substr(0, 3) == "\xef\xbb\xbf") source.remove_prefix(3);
+    for (int i = 1; i < line; ++i) {
+        const std::size_t end = source.find('\n');
+        if (end == std::string_view::npos) return {};
+        source.remove_prefix(end + 1);
+    }
+    source = source.substr(0, source.find('\n'));
+    if (!source.empty() && source.back() == '\r') source.remove_suffix(1);
+    return source;
+}
+
 void Findings::add(Severity severity, const SourceLocation& place, std::string_view code, std::string message,
                    Advice advice)
 {
     assert(!explain(code).empty() && "every code has a page");
     if (severity == Severity::error) ++n_errors_;
     if (place.origin > 0) {
-        if (!told_of_copies_.emplace(place.line, place.column, code).second) return;
+        if (!told_of_copies_.emplace(place.file, place.line, place.column, code).second) return;
         const std::string& words = origins_[static_cast<std::size_t>(place.origin) - 1];
         advice.note += (advice.note.empty() ? "" : "; ") + words;
     }
@@ -54,15 +68,32 @@ void Findings::add(Severity severity, const SourceLocation& place, std::string_v
         ++n_dropped_;
         return;
     }
-    found_.push_back({severity,
-                      std::string(code),
-                      std::move(message),
-                      {},
-                      place.line,
-                      place.column,
-                      std::max(1, place.length),
-                      std::move(advice.note),
-                      std::move(advice.help)});
+    found_.push_back({{severity,
+                       std::string(code),
+                       std::move(message),
+                       {},
+                       place.line,
+                       place.column,
+                       std::max(1, place.length),
+                       std::move(advice.note),
+                       std::move(advice.help)},
+                      place.file});
+}
+
+int Findings::add_file(const std::string& name, std::string_view text)
+{
+    files_.push_back({name, std::string(text)});
+    return static_cast<int>(files_.size());
+}
+
+void Findings::adopt(const Findings& of_file, int file)
+{
+    n_errors_ += of_file.n_errors_;
+    n_dropped_ += of_file.n_dropped_;
+    for (Found one : of_file.found_) {
+        one.file = file;
+        found_.push_back(std::move(one));
+    }
 }
 
 int Findings::add_origin(std::string words)
@@ -84,22 +115,36 @@ void Findings::warning(const SourceLocation& place, std::string_view code, std::
 
 std::vector<Diagnostic> Findings::take(const std::string& file)
 {
-    const auto in_file = [](const Diagnostic& a, const Diagnostic& b) {
-        return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+    const auto in_file = [](const Found& a, const Found& b) {
+        return std::tie(a.file, a.told.line, a.told.column) < std::tie(b.file, b.told.line, b.told.column);
     };
-    const auto by_severity = [](const Diagnostic& a, const Diagnostic& b) { return a.severity < b.severity; };
+    // A file that is included twice has its faults once.
+    const auto is_same = [](const Found& a, const Found& b) {
+        return a.file > 0 && a.file == b.file && a.told.line == b.told.line &&
+               a.told.column == b.told.column && a.told.code == b.told.code &&
+               a.told.message == b.told.message;
+    };
+    const auto by_severity = [](const Found& a, const Found& b) { return a.told.severity < b.told.severity; };
     std::stable_sort(found_.begin(), found_.end(), in_file);
+    found_.erase(std::unique(found_.begin(), found_.end(), is_same), found_.end());
     // Errors stay before warnings where not all fit, but are shown in the order of the file.
     if (found_.size() > most_findings) {
         std::stable_sort(found_.begin(), found_.end(), by_severity);
         n_dropped_ += static_cast<int>(found_.size()) - most_findings;
         found_.resize(most_findings);
         std::stable_sort(found_.begin(), found_.end(), in_file);
-        std::string& note = found_.back().note;
+        std::string& note = found_.back().told.note;
         note += (note.empty() ? "" : "; ") + std::to_string(n_dropped_) + " more are not shown";
     }
-    for (Diagnostic& d : found_) d.file = file;
-    return std::move(found_);
+    std::vector<Diagnostic> all;
+    for (Found& one : found_) {
+        Diagnostic& d = all.emplace_back(std::move(one.told));
+        const File* included = one.file > 0 ? &files_[static_cast<std::size_t>(one.file - 1)] : nullptr;
+        d.file = included == nullptr ? file : included->name;
+        if (included != nullptr && d.line > 0) d.source_line = find_line(included->text, d.line);
+    }
+    found_.clear();
+    return all;
 }
 
 std::string_view closest(std::string_view word, std::span<const std::string_view> candidates)

@@ -18,6 +18,7 @@ struct SourceLocation {
     int line = 0;
     int column = 0;
     int length = 1;
+    int file = 0;     ///< 0: the one that is read, or else one that it includes, by Findings::add_file()
     int origin = 0;   ///< of a copy: see Findings::add_origin()
 };
 
@@ -33,6 +34,10 @@ public:
     bool error(const SourceLocation& place, std::string_view code, std::string message, Advice advice = {});
     void warning(const SourceLocation& place, std::string_view code, std::string message, Advice advice = {});
 
+    /// A file that is included, for places in it.
+    int add_file(const std::string& name, std::string_view text);
+    /// What was found of that file before its places knew it.
+    void adopt(const Findings& of_file, int file);
     /// A copy of what stands in the file: findings at places of this origin have the words as a note, and
     /// those that other copies of the place have as well are told once.
     int add_origin(std::string words);
@@ -40,20 +45,31 @@ public:
     /// Errors so far: a reader compares before and after to learn whether a part was in order.
     int n_errors() const { return n_errors_; }
 
-    /// At most 20, errors first if there are more, in the order of the file; the last one says how many are
-    /// missing.
+    /// At most 20, errors first if there are more, in the order of the file, those of files that it includes
+    /// behind its own; the last one says how many are missing. `file`: of the one that is read.
     std::vector<Diagnostic> take(const std::string& file);
 
 private:
     void add(Severity severity, const SourceLocation& place, std::string_view code, std::string message,
              Advice advice);
 
-    std::vector<Diagnostic> found_;
+    struct File {
+        std::string name, text;
+    };
+    struct Found {
+        Diagnostic told;
+        int file = 0;
+    };
+    std::vector<Found> found_;
+    std::vector<File> files_;
     std::vector<std::string> origins_;
-    std::set<std::tuple<int, int, std::string>> told_of_copies_;   ///< line, column, code
+    std::set<std::tuple<int, int, int, std::string>> told_of_copies_;   ///< file, line, column, code
     int n_errors_ = 0;
     int n_dropped_ = 0;
 };
+
+/// A line of a text, without its end.
+std::string_view find_line(std::string_view source, int line);
 
 /// What of a text deceives eye or terminal: "control characters, here U+009B"; empty if nothing does.
 std::string first_invisible(std::string_view text);

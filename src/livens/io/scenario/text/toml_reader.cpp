@@ -40,6 +40,17 @@ struct ParserFault {};
 
 namespace livens::inline io_internal {
 
+void place_in(Node& node, int file)
+{
+    node.place.file = file;
+    if (node.content == nullptr) return;
+    for (Node& item : node.content->items) place_in(item, file);
+    for (Entry& entry : node.content->entries) {
+        entry.place.file = file;
+        place_in(entry.value, file);
+    }
+}
+
 namespace {
 
 constexpr const char* quotes_help = "what is not ASCII is written in quotes: \"ä\" = 1";

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// livens import: a scenario out of another program's file.
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "console.h"
+#include "failure.h"
+#include "finite_number.h"
+#include "livens/io/import.h"
+#include "places.h"
+#include "summary.h"
+
+namespace livens::program {
+
+namespace {
+
+/// NAME=VALUE as typed; names may hold '=' no more than values may.
+std::pair<std::string, std::string> pair_of(const std::string& text, const char* option)
+{
+    const std::size_t at = text.rfind('=');
+    if (at == std::string::npos || at == 0 || at + 1 == text.size())
+        throw failure(exit_usage, std::string(option) + " takes NAME=VALUE, not '" + text + "'");
+    return {text.substr(0, at), text.substr(at + 1)};
+}
+
+UrdfOptions options_of(const ImportArguments& arguments, const std::filesystem::path& output)
+{
+    UrdfOptions options;
+    for (const std::string& text : arguments.at) {
+        const auto [name, value] = pair_of(text, "--at");
+        options.at[name] = finite_number(value, "--at", "a number");
+    }
+    for (const std::string& text : arguments.packages) {
+        const auto [name, folder] = pair_of(text, "--package");
+        options.packages[name] = folder;
+    }
+    if (arguments.base == "free") options.base = UrdfOptions::Base::free;
+    if (arguments.meshes == "none") options.meshes = UrdfOptions::Meshes::none;
+    if (arguments.limits == "ignore") options.limits = UrdfOptions::Limits::ignore;
+    if (arguments.inertias == "strict") options.inertias = UrdfOptions::Inertias::strict;
+    options.is_strict = arguments.is_strict;
+    options.end = finite_number(arguments.end, "--end", "a number");
+    options.folder = output.parent_path();
+    return options;
+}
+
+/// Made by this command before.
+bool is_imported(std::string_view head)
+{
+    return head.starts_with("# From ") && head.substr(0, head.find('\n')).ends_with(", by livens import.");
+}
+
+std::string json_of(const std::filesystem::path& output, const Scenario& scenario,
+                    const std::vector<Diagnostic>& imported)
+{
+    JsonWriter json(2);
+    json.begin_object().member("scenario", output.string()).member("title", scenario.title);
+    json.member("bodies", scenario.model.n_bodies()).member("joints", scenario.model.joints().size());
+    json.member("loads", scenario.model.loads().size()).key("warnings");
+    write_diagnostics(json, imported);
+    json.key("errors").begin_array().end_array().end_object();
+    return json.text() + "\n";
+}
+
+}   // namespace
+
+int import_command(const ImportArguments& arguments, const Common& common)
+{
+    std::filesystem::path output = arguments.output;
+    if (output.empty()) output = std::filesystem::path(arguments.file).stem().string() + ".toml";
+    check_differs(output, arguments.file, "it is the file that is imported");
+    check_place(output, is_imported, arguments.force);
+    UrdfResult result = read_urdf(arguments.file, options_of(arguments, output));
+    const std::string toml = std::move(result.toml);
+    std::vector<Diagnostic> imported;
+    const Scenario scenario = accepted(std::move(result), common, &imported);
+    check_inputs(output, scenario);
+    replace_file(output, toml);
+    if (common.json) {
+        print(json_of(output, scenario, imported));
+        return exit_ok;
+    }
+    if (common.quiet) return exit_ok;
+    Summary summary(terminal_of(STDOUT_FILENO));
+    const auto counted = [](std::size_t n, const char* one, const char* many) {
+        return fmt::format("{} {}", n, n == 1 ? one : many);
+    };
+    summary.headline(Ink::good, "Written",
+                     fmt::format("{}, {}, {} and {}", plain(output.string()),
+                                 counted(scenario.model.bodies().size(), "body", "bodies"),
+                                 counted(scenario.model.joints().size(), "joint", "joints"),
+                                 counted(scenario.model.loads().size(), "load", "loads")));
+    summary.aside("next: livens solve " + plain(quoted(output.string())));
+    print(summary.text());
+    return exit_ok;
+}
+
+}   // namespace livens::program

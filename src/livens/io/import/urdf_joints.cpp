@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Joints are stated where the bodies stand, by a point and an axis of the world, and with the coordinate that
+// they have there: coordinates are those of the file.
+#include "livens/io/import/urdf_joints.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace livens::inline io_internal {
+
+namespace {
+
+std::string_view word_of(UrdfJoint::Type type)
+{
+    using enum UrdfJoint::Type;
+    if (type == prismatic) return "prismatic";
+    if (type == spherical) return "spherical";
+    if (type == planar) return "planar";
+    return "revolute";
+}
+
+TableMaker joint_table(const SourceLocation& place, const std::string& name, std::string_view type)
+{
+    TableMaker table(place);
+    table.text("name", name).text("type", std::string(type));
+    return table;
+}
+
+std::vector<Vector3> triad(const Matrix3& axes) { return {axes.column(0), axes.column(1), axes.column(2)}; }
+
+TableMaker frame_table(const Pose& pose)
+{
+    TableMaker table({});
+    table.vector("point", pose.origin).rows("directors", triad(pose.axes));
+    return table;
+}
+
+}   // namespace
+
+void place_in(TableMaker& table, const Pose& pose)
+{
+    if (!(pose.origin == Vector3{})) table.vector("position", pose.origin);
+    if (!(pose.axes == identity<3>())) table.rows("directors", triad(pose.axes));
+}
+
+UrdfJoints::UrdfJoints(const UrdfFile& file, const UrdfTree& tree, const UrdfOptions& options, Losses& losses)
+    : file_(file), tree_(tree), options_(options), losses_(losses), body_names_{"world"}, taken_{"world"}
+{
+    for (const int link : tree.frames) {
+        const std::string& name = file.links[link].name;
+        body_names_.push_back(name == "world" ? "world link" : name);
+        taken_.insert(body_names_.back());
+    }
+}
+
+/// Bodies, joints and loads are asked for by name, so that each has one of its own.
+std::string UrdfJoints::unused(std::string name)
+{
+    while (!taken_.insert(name).second) name += " joint";
+    return name;
+}
+
+Pose UrdfJoints::in_body(const PlacedLink& link) const
+{
+    if (link.body < 0) return link.pose;
+    const Pose& frame = tree_.links[tree_.frames[link.body]].pose;
+    const Matrix3 back = transpose(frame.axes);
+    return {back * link.pose.axes, back * (link.pose.origin - frame.origin)};
+}
+
+TableMaker UrdfJoints::joint(const PlacedJoint& placed)
+{
+    const UrdfJoint& joint = file_.joints[placed.joint];
+    const std::string name = unused(joint.name);
+    if (name != joint.name) losses_.add(losses::renamed, joint.place, "'" + joint.name + "'");
+    names_[joint.name] = name;
+    TableMaker table = joint_table(joint.place, name, word_of(joint.type));
+    table.texts("between", {body_name(placed.first), body_name(placed.second)}).vector("at", placed.at);
+    if (joint.type != UrdfJoint::Type::spherical) table.vector("axis", placed.axis);
+    if (joint.has_coordinate() && placed.coordinate != 0) table.number("coordinate", placed.coordinate);
+    add_loads(table, placed);
+    return table;
+}
+
+/// What the joint does along its coordinate. A start beyond a limit would be thrown back, and one at it would
+/// rest on a stiff spring, as knees do that are drawn straight: such an end is told instead.
+void UrdfJoints::add_loads(TableMaker& table, const PlacedJoint& placed)
+{
+    const UrdfJoint& joint = file_.joints[placed.joint];
+    const std::string name = "'" + joint.name + "'";
+    if (joint.damping > 0 && joint.type == UrdfJoint::Type::planar)
+        losses_.add(losses::damping, joint.place, name);
+    else if (joint.damping > 0)
+        table.number("damping", joint.damping);
+    if (!joint.limit) return;
+    const UrdfLimit& limit = *joint.limit;
+    if (limit.effort > 0 || limit.velocity > 0) losses_.add(losses::bounds, limit.place, name);
+    if (joint.type == UrdfJoint::Type::continuous || !joint.has_coordinate() || !limit.lower) return;
+    if (options_.limits == UrdfOptions::Limits::ignore) return losses_.add(losses::limits, limit.place, name);
+    if (!(*limit.lower < *limit.upper)) return losses_.add(losses::limits_order, limit.place, name);
+    constexpr double slack = 1e-6;   // rad or m, of a start at a limit that was computed
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const double q = placed.coordinate;
+    const double low = q > *limit.lower + slack ? *limit.lower : -infinity;
+    const double high = q < *limit.upper - slack ? *limit.upper : infinity;
+    if (low == -infinity || high == infinity) losses_.add(losses::limits_at_start, limit.place, name);
+    if (low > -infinity || high < infinity) table.numbers("limits", std::array{low, high});
+}
+
+/// A joint that follows another one: coordinate = multiplier times the leader's + what it is at the start.
+void UrdfJoints::couple(const PlacedJoint& placed, double pinion_mass, std::vector<TableMaker>& joints,
+                        std::vector<TableMaker>& bodies)
+{
+    const UrdfJoint& joint = file_.joints[placed.joint];
+    const UrdfMimic& mimic = *joint.mimic;
+    const auto leader = std::ranges::find(file_.joints, mimic.joint, &UrdfJoint::name);
+    const std::string &follows = names_.at(joint.name), &leads = names_.at(mimic.joint);
+    const std::string name = unused("mimic " + joint.name);
+    if (leader->turns() && joint.turns()) {
+        joints.push_back(joint_table(mimic.place, name, "gear"));
+        joints.back().texts("joints", {leads, follows}).number("ratio", mimic.multiplier);
+        return;
+    }
+    const auto rack = [&](const std::string& of, const std::string& turns, const std::string& slides,
+                          double radius) {
+        joints.push_back(joint_table(mimic.place, of, "rack_and_pinion"));
+        joints.back().texts("joints", {turns, slides}).number("radius", radius);
+    };
+    if (leader->turns()) return rack(name, leads, follows, mimic.multiplier);
+    if (joint.turns()) return rack(name, follows, leads, 1 / mimic.multiplier);
+    // Of two slides: a pinion of radius 1 m stands in the world, which the leader turns.
+    const std::string pinion = unused("pinion of " + joint.name), shaft = unused("shaft of " + joint.name);
+    TableMaker body(mimic.place);
+    body.text("name", pinion).number("mass", pinion_mass).vector("inertia", pinion_mass * Vector3{1, 1, 1});
+    if (placed.rate != 0) body.vector("angular_velocity", {0, 0, placed.rate / mimic.multiplier});
+    bodies.push_back(std::move(body));
+    joints.push_back(joint_table(mimic.place, shaft, "revolute"));
+    joints.back().texts("between", {"world", pinion}).vector("at", {}).vector("axis", {0, 0, 1});
+    rack(name, shaft, leads, 1);
+    rack(unused(name + " 2"), shaft, follows, mimic.multiplier);
+    losses_.add(losses::pinion, mimic.place, "'" + joint.name + "'");
+}
+
+std::vector<TableMaker> UrdfJoints::joints(double pinion_mass, std::vector<TableMaker>& bodies)
+{
+    std::vector<TableMaker> all;
+    for (const PlacedJoint& placed : tree_.joints) all.push_back(joint(placed));
+    for (const PlacedJoint& placed : tree_.joints)
+        if (file_.joints[placed.joint].mimic) couple(placed, pinion_mass, all, bodies);
+    return all;
+}
+
+const PlacedLink* UrdfJoints::find_link(const std::string& name, Findings& findings) const
+{
+    const auto found = std::ranges::find(file_.links, name, &UrdfLink::name);
+    if (found != file_.links.end()) return &tree_.links[found - file_.links.begin()];
+    std::vector<std::string_view> known;
+    for (const UrdfLink& link : file_.links) known.push_back(link.name);
+    findings.error({}, "body-unknown", "a loop names the link '" + name + "', and there is no such link",
+                   {"", suggest(name, known)});
+    return nullptr;
+}
+
+void UrdfJoints::add_loops(std::vector<TableMaker>& joints, Findings& findings)
+{
+    for (const UrdfLoop& loop : options_.loops) {
+        const PlacedLink* first = find_link(loop.first, findings);
+        const PlacedLink* second = find_link(loop.second, findings);
+        if (first == nullptr || second == nullptr) continue;
+        const std::string label = "the loop of '" + loop.first + "' and '" + loop.second + "'";
+        if (first->body == second->body) {
+            findings.error({}, "joint-self", label + " holds two parts of one body");
+            continue;
+        }
+        if (loop.type != "weld" && loop.type != "spherical" && loop.type != "revolute") {
+            findings.error({}, "unknown-choice", label + " is of the type '" + loop.type + "'",
+                           {"", "known are weld, spherical and revolute"});
+            continue;
+        }
+        const Pose one = in_body(*first), other = in_body(*second);
+        TableMaker table = joint_table({}, unused("loop " + loop.first + " " + loop.second), loop.type);
+        table.texts("between", {body_name(first->body), body_name(second->body)});
+        if (loop.type == "spherical") {
+            table.rows("points", {one.origin, other.origin});
+        } else {
+            std::vector<TableMaker> frames;
+            frames.push_back(frame_table(one));
+            frames.push_back(frame_table(other));
+            table.tables("frames", std::move(frames));
+        }
+        joints.push_back(std::move(table));
+    }
+}
+
+}   // namespace livens::inline io_internal

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Loads that a [[joint]] states itself, along its coordinate or, of two, in a table for each: one load of the
+// model for each coordinate, made like a [[load]] of type spring on the joint, so that energies, sensors and
+// results know it.
+#include "livens/dynamics/instant/inertia_along.h"
+#include "livens/io/scenario/joints/joints.h"
+#include "livens/io/scenario/loads/load_makers.h"
+
+namespace livens::inline io_internal {
+
+namespace {
+
+/// What stands along one coordinate of a joint.
+struct AlongCoordinate {
+    const Section* keys;      ///< of the joint, or of its table for the coordinate
+    std::string load;         ///< name of what is made of them
+    std::string_view which;   ///< coordinate; empty: the joint has but one
+    int joint = -1;
+    double inertia = 0;   ///< that a force along the coordinate moves, where somebody wants to know
+
+    const NamedCoordinate& coordinate(const Joint& of) const
+    {
+        return which.empty() ? of.coordinates.front() : *find_coordinate(of, which);
+    }
+};
+
+bool has_loads(const Section& keys)
+{
+    return keys.number("damping") > 0 ||
+           (keys.takes("limits") && (keys.number("stiffness") > 0 || keys.has("limits")));
+}
+
+std::string name_of_joint(const Section& joint)
+{
+    return joint.has("name") ? joint.text("name") : default_name(joint);
+}
+
+/// The parts of a joint that may hold loads.
+std::vector<AlongCoordinate> loaded_parts(const Section& joint)
+{
+    if (joint.kind() == any_kind) return {};
+    if (joint.takes("damping")) return {{&joint, name_of_joint(joint), ""}};
+    std::vector<AlongCoordinate> parts;
+    for (const std::string_view which : {"angle", "displacement"}) {
+        const std::span<const Section> tables = joint.sections(which);
+        if (!tables.empty())
+            parts.push_back({&tables.front(), name_of_joint(joint) + " " + std::string(which), which});
+    }
+    return parts;
+}
+
+bool check_joint_loads(const Section& joint, const Section& keys)
+{
+    if (keys.takes("rest") && !keys.has("stiffness") &&
+        !keys.refuse({"rest"}, "joint-loads",
+                     "it is where a spring has no force, and there is no 'stiffness'"))
+        return false;
+    if (keys.takes("limits") && !keys.has("limits") &&
+        !keys.refuse({"limit_stiffness", "limit_damping"}, "joint-loads", "there are no 'limits'"))
+        return false;
+    if (!has_loads(keys) || !joint.has("until")) return true;
+    return keys.error("", "joint-loads", joint.label() + " is released, but its loads would continue to act",
+                      {"loads along a coordinate have no end",
+                       "leave out 'until', or let a [[load]] of type \"actuator\" with 'until' act, by a "
+                       "formula of the coordinate and its rate"});
+}
+
+/// Of a ball joint, which has no coordinate, a damper of all turns.
+Load make_joint_load(Builder& builder, const AlongCoordinate& part, const Joint& joint,
+                     const std::string& path)
+{
+    const Section& keys = *part.keys;
+    if (joint.coordinates.empty())
+        return rotational_damper(part.load, joint.first, joint.second, keys.number("damping"),
+                                 places(builder));
+    const NamedCoordinate& coordinate = part.coordinate(joint);
+    const JointSpring law{keys.number("stiffness"), keys.number("damping"), keys.number("rest")};
+    JointLimits limits;
+    if (keys.has("limits")) limits = read_limits(builder, keys, joint, coordinate, part.inertia, path);
+    if (keys.has("limits") && !ends_at_bends(builder))
+        builder.findings().warning(
+            keys.place("limits"), "spring-kink",
+            "the springs at the limits of '" + joint.name + "' begin to act where it gets there",
+            {"no element ends there but of lobatto and radau, forwards one after the other, so that the "
+             "estimated error may miss it as well",
+             "take the family lobatto"});
+    return joint_spring(part.load, coordinate, law, limits, places(builder));
+}
+
+/// Of limits whose stiffness is to follow from the bodies.
+void find_inertias(const Model& model, std::vector<AlongCoordinate>& parts)
+{
+    std::vector<JointCoordinate> wanted;
+    std::vector<AlongCoordinate*> owners;
+    for (AlongCoordinate& part : parts)
+        if (part.keys->takes("limits") && part.keys->has("limits") && !part.keys->has("limit_stiffness")) {
+            wanted.push_back(
+                part.coordinate(model.joints()[static_cast<std::size_t>(part.joint)]).coordinate);
+            owners.push_back(&part);
+        }
+    if (wanted.empty()) return;
+    const std::vector<double> inertias = inertias_along(model, wanted);
+    for (std::size_t k = 0; k < owners.size(); ++k) owners[k]->inertia = inertias[k];
+}
+
+}   // namespace
+
+std::vector<std::string> names_of_joint_loads(const Builder& builder)
+{
+    std::vector<std::string> names;
+    for (const Section& joint : builder.top().sections("joint"))
+        for (const AlongCoordinate& part : loaded_parts(joint))
+            if (has_loads(*part.keys)) names.push_back(part.load);
+    return names;
+}
+
+void read_joint_loads(Builder& builder)
+{
+    const std::vector<Joint>& joints = builder.model().joints();
+    std::vector<AlongCoordinate> parts;
+    for (const Section& section : builder.top().sections("joint"))
+        for (AlongCoordinate& part : loaded_parts(section)) {
+            if (!check_joint_loads(section, *part.keys) || !has_loads(*part.keys)) continue;
+            part.joint = builder.model().find_joint(name_of_joint(section));
+            if (part.joint >= 0) parts.push_back(std::move(part));   // else told already
+        }
+    find_inertias(builder.model(), parts);
+    for (const AlongCoordinate& part : parts) {
+        const std::string path = "load[" + part.load + "]";
+        builder.remember(path, *part.keys);
+        builder.guard(path, [&] {
+            Load load = make_joint_load(builder, part, joints[static_cast<std::size_t>(part.joint)], path);
+            load.type = "joint";
+            builder.model().add_load(std::move(load));
+        });
+    }
+}
+
+}   // namespace livens::inline io_internal

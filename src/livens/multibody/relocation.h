@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Parts of a model as they are in another one, to which they are added.
+#pragma once
+
+#include <string>
+
+#include "livens/multibody/displacement.h"
+#include "livens/multibody/model.h"
+
+namespace livens::inline multibody_internal {
+
+/// Names get a prefix, indices count on, and everything is displaced: bodies with their velocities, and what
+/// refers to the axes or places of the world, which then are those of the displacement. Numbers that sensors,
+/// coordinates and loads tell of themselves stay what they are.
+struct Relocation {
+    std::string prefix;
+    Displacement by{};
+    int first_body = 0, first_load = 0;
+
+    std::string name(const std::string& own) const { return prefix + own; }
+    int body(int own) const { return own == world ? world : own + first_body; }
+};
+
+Body relocated(Body body, const Relocation& to);
+NamedPoint relocated(NamedPoint point, const Relocation& to);
+Joint relocated(Joint joint, const Relocation& to);
+Load relocated(Load load, const Relocation& to);
+Sensor relocated(Sensor sensor, const Relocation& to);
+
+}   // namespace livens::inline multibody_internal
