@@ -233,9 +233,9 @@ const tests = {
     await page.waitForFunction(() => window.livensReport);
     assert.equal(await page.inputValue("#angles"), "deg");
     assert.match(await plot(page, "Angles of joints").locator("figcaption").textContent(), /deg/);
-    await page.selectOption("#add", { label: "Rates of angles (2)" });
+    await page.selectOption("#add", { label: "Rates of angles" });
     await page.selectOption("#angles", "rpm");
-    const rates = await table(page, plot(page, "Rates of angles (2)"));
+    const rates = await table(page, plot(page, "Rates of angles"));
     assert.equal(rates.head[1], "shaft [rpm]");
     assert.ok(Math.abs(rates.rows[450][1] - 180 / Math.PI) < 1e-4, `${rates.rows[450]}`);
     await page.selectOption("#angles", "rad");

@@ -8,7 +8,7 @@
 
 #include "livens/multibody/loads/load_tape.h"
 
-namespace livens::inline multibody_internal {
+namespace livens {
 
 namespace {
 
@@ -222,4 +222,4 @@ Sensor relocated(Sensor sensor, const Relocation& to)
     return sensor;
 }
 
-}   // namespace livens::inline multibody_internal
+}   // namespace livens

@@ -7,7 +7,7 @@
 #include "livens/multibody/displacement.h"
 #include "livens/multibody/model.h"
 
-namespace livens::inline multibody_internal {
+namespace [[gnu::visibility("default")]] livens {
 
 /// Names get a prefix, indices count on, and everything is displaced: bodies with their velocities, and what
 /// refers to the axes or places of the world, which then are those of the displacement. Numbers that sensors,
@@ -21,10 +21,11 @@ struct Relocation {
     int body(int own) const { return own == world ? world : own + first_body; }
 };
 
+/// A part as it is in the other model.  (Model::add)
 Body relocated(Body body, const Relocation& to);
 NamedPoint relocated(NamedPoint point, const Relocation& to);
 Joint relocated(Joint joint, const Relocation& to);
 Load relocated(Load load, const Relocation& to);
 Sensor relocated(Sensor sensor, const Relocation& to);
 
-}   // namespace livens::inline multibody_internal
+}   // namespace gnu::visibility("default")]]livens
