@@ -7,7 +7,7 @@
 
 #include "livens/solvers/spectral.h"
 
-namespace livens::inline multibody_internal {
+namespace livens {
 
 Matrix3 nearest_inertia(const Matrix3& inertia)
 {
@@ -19,4 +19,4 @@ Matrix3 nearest_inertia(const Matrix3& inertia)
     return trace(E) * identity<3>() - E;
 }
 
-}   // namespace livens::inline multibody_internal
+}   // namespace livens

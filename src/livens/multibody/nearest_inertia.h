@@ -4,11 +4,11 @@
 
 #include "livens/base/linear.h"
 
-namespace livens::inline multibody_internal {
+namespace [[gnu::visibility("default")]] livens {
 
 /// The inertia nearest to a symmetric one that a body can have: E = (tr J / 2) 1 - J without its negative
 /// part, which is the least change in the norm of E. As it is where J1 + J2 >= J3 but for 5e-13 of the
 /// largest.
 Matrix3 nearest_inertia(const Matrix3& inertia);
 
-}   // namespace livens::inline multibody_internal
+}   // namespace gnu::visibility("default")]]livens

@@ -5,7 +5,7 @@
 #include <exception>
 #include <functional>
 
-namespace livens::inline solvers_internal {
+namespace [[gnu::visibility("default")]] livens {
 
 /// What ask() throws where it is not. Whoever can keep something of the work catches it.
 class Stopped final : public std::exception {
@@ -38,4 +38,4 @@ private:
     double stopped_at_ = -1;   // s of CPU time; before: -1
 };
 
-}   // namespace livens::inline solvers_internal
+}   // namespace gnu::visibility("default")]]livens
