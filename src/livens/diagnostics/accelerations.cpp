@@ -38,8 +38,9 @@ struct Accelerations::Phase {
         solved.resize(tables);
     }
 
-    bool settle(const State& state);
-    bool accelerate(const State& state, const std::vector<double>& angles, Side side);
+    [[gnu::visibility("hidden")]] bool settle(const State& state);
+    [[gnu::visibility("hidden")]] bool accelerate(const State& state, const std::vector<double>& angles,
+                                                  Side side);
 
     ActingModel acting;
     ModelTables tables;

@@ -202,7 +202,8 @@ struct JointSampler::Parts {
         : rows(model, false), independent(kept_rows(model, motion))
     {}
 
-    std::optional<Held> held_in(const Model& model, const Motion& motion, const State& state);
+    [[gnu::visibility("hidden")]] std::optional<Held> held_in(const Model& model, const Motion& motion,
+                                                              const State& state);
     Reaction reaction(const Model& model, int joint, std::span<const Matrix34> X,
                       std::span<const double> multipliers) const;
 
