@@ -10,6 +10,7 @@
 #include "livens/base/text.h"
 #include "livens/diagnostics/extremes.h"
 #include "livens/dynamics/start/prepared.h"
+#include "livens/solvers/patience.h"
 
 namespace livens {
 
@@ -33,11 +34,14 @@ namespace {
 void tell_limits(const Scenario& scenario, Run& run)
 {
     const std::vector<Load>& loads = scenario.model.loads();
+    const auto has_limits = [](const Load& load) {
+        return std::ranges::find(load.readings, "penetration", &LoadReading::name) != load.readings.end();
+    };
+    if (std::ranges::none_of(loads, has_limits) || run.motion.n_elements() == 0) return;
     const Quantities quantities(scenario.model, run.motion, run.body_names);
     std::vector<QuantitySeries> series;
     for (const NamedQuantity& q : quantities.all())
         if (q.of == QuantityOf::load && q.what == "penetration") series.push_back({q});
-    if (series.empty() || run.motion.n_elements() == 0) return;
     const std::vector<Extremes> found = find_extremes(quantities, run.motion, series, {});
     for (std::size_t i = 0; i < series.size(); ++i) {
         const Load& load = loads[static_cast<std::size_t>(series[i].quantity.index)];
@@ -64,7 +68,10 @@ Run judged_run(const Scenario& scenario, SolvedScenario&& solved, const std::fun
     run.resolved = scenario.resolved;
     // Without output times the element ends are the samples, where a motion has its best states.
     run.output = scenario.output.empty() ? run.motion.mesh.ends : scenario.output;
-    tell_limits(scenario, run);
+    try {
+        tell_limits(scenario, run);
+    } catch (const Stopped&) {   // as the motion stays unjudged then
+    }
     return run;
 }
 
