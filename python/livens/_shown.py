@@ -50,8 +50,9 @@ class Extremes(NamedTuple):
 
     @property
     def peak(self) -> Peak:
-        """The one farther from zero, with its sign."""
-        return Peak(self.min, self.t_min) if -self.min > self.max else Peak(self.max, self.t_max)
+        """The one farther from zero, with its sign; the earlier one where rounding alone tells them apart."""
+        is_low = self.t_min < self.t_max if abs(self.min + self.max) <= 1e-9 * abs(self.max) else -self.min > self.max
+        return Peak(self.min, self.t_min) if is_low else Peak(self.max, self.t_max)
 
 
 def factor_to(unit: str, wanted: str | Sequence[str] | None) -> tuple[float, str]:

@@ -2,6 +2,7 @@
 // Least and largest values of a motion's quantities, with their instants.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <span>
@@ -33,8 +34,14 @@ struct Extreme {
 struct Extremes {
     std::string name, unit;
     Extreme least, largest;
-    /// What is farther from zero of both, with its sign.
-    const Extreme& peak() const { return -least.value > largest.value ? least : largest; }
+    /// What is farther from zero of both, with its sign; the earlier one where rounding alone tells them
+    /// apart.
+    const Extreme& peak() const
+    {
+        const double below = -least.value, above = largest.value, rounding = 1e-9 * std::abs(above);
+        if (std::abs(below - above) <= rounding) return least.t < largest.t ? least : largest;
+        return below > above ? least : largest;
+    }
     /// An instant at which it is no number; nan: none was met. Then the others are nan as well.
     double lost_at;
 };
