@@ -1288,8 +1288,8 @@ livens_mutant(NAME index_without_parentheses
 # What turns with a model that is added stays behind by a sign.
 livens_mutant(NAME added_rows_shifted_back
               FILE multibody/relocation.cpp
-              OLD [[moved.b_i = turned_i - outer(]]
-              NEW [[moved.b_i = turned_i + outer(]]
+              OLD [[moved.b_j = turned_j - outer(]]
+              NEW [[moved.b_j = turned_j + outer(]]
               TESTS_OF properties
               MUST_FAIL Relocated.JointsHoldWhatTheyHeld)
 
