@@ -21,7 +21,8 @@ namespace {
 constexpr double bytes_of_number = 8;   // of what poses may take: a series takes half as much as they do
 constexpr double fewest_instants = 120;
 constexpr double no_signal = 1e-12;   // of the largest number of all: rounding
-constexpr int n_places = 400;          // at what series lose between their instants
+constexpr double flat = 2e-6;         // of itself: what plots show at the least
+constexpr int n_places = 400;         // at what series lose between their instants
 
 struct Channel {
     const char* kind;   ///< "energy", "joint", "reaction", "drive", "body", "load", "sensor"
@@ -195,8 +196,10 @@ public:
                 high = x > high ? x : high;
                 largest_ = std::abs(x) > largest_ ? std::abs(x) : largest_;
             }
+            // What is constant but for rounding is shown as a line.
+            const double shown = std::max(high - low, flat * std::max(std::abs(high), std::abs(low)));
             double& range = ranges_[curves.channels()[c].unit];
-            if (high - low > range) range = high - low;
+            if (shown > range) range = shown;
         }
     }
 
