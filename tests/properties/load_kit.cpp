@@ -278,8 +278,9 @@ Failures check_load(const LoadCase& load)
 {
     Failures all;
     for (const auto check : {check_load_tangent, check_load_products, check_load_energy, check_load_potential,
-                             check_load_breaks, check_load_directors, check_load_lanes, check_load_supply})
+                             check_load_breaks, check_load_directors, check_load_lanes})
         for (const std::string& failure : check(load)) all.push_back(load.what + ": " + failure);
+    for (const std::string& failure : check_load_supply(load)) all.push_back(load.what + ": " + failure);
     Random random(6);
     if (load.make(random).type != load.type)
         all.push_back(load.what + ": its type is not '" + load.type + "'");

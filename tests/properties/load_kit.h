@@ -69,7 +69,7 @@ Failures check_load_breaks(const LoadCase& load);
 Failures check_load_lanes(const LoadCase& load);
 /// What it supplies, on a tape: F, its moment and its power without potential, to 1e-13 of what they are made
 /// of; and sizes that are at least those of F.
-Failures check_load_supply(const LoadCase& load);
+Failures check_load_supply(const LoadCase& load, double bound = 1e-13);
 /// No force outside the first column unless needs_directors says so.
 Failures check_load_directors(const LoadCase& load);
 

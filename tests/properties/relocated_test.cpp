@@ -200,8 +200,11 @@ class EveryMovedLoad : public testing::TestWithParam<LoadCase> {};
 TEST_P(EveryMovedLoad, RunsInLanesAndPullsWhatItPulled)
 {
     const LoadCase moved = moved_case(GetParam());
-    for (const auto& check : {check_load_lanes, check_load_supply, check_load_products, check_load_directors})
+    for (const auto& check : {check_load_lanes, check_load_products, check_load_directors})
         EXPECT_EQ(joined(check(moved)), "");
+    // Tape and function move places back in sums of another order: what laws read is a difference of places
+    // up to ten times as large.
+    EXPECT_EQ(joined(check_load_supply(moved, 1e-12)), "");
     Random random(6);
     for (int n = 0; n < of_states(50); ++n) {
         const Load load = GetParam().make(random);
