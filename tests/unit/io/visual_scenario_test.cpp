@@ -116,7 +116,50 @@ TEST(Visual, IsRefusedWithWhatToWriteInstead)
     expect("{ box = [4, 2, 0.1]", "{ box = [4, 2, 0.1], sphere = 1", "shape", "keep one");
     expect("{ box = [4, 2, 0.1]", "{ mesh = \"a.stl\"", "mesh-unit", "add unit");
     expect("{ box = [4, 2, 0.1]", "{ mesh = \"a.stl\", unit = \"m\"", "mesh-file", "");
-    expect("center_of_mass", "shape = { sphere = 1 }\ncenter_of_mass", "mass-conflict", "visual =");
+}
+
+/// A shape beside `inertia` is drawn and does nothing else: a primitive about the centre of mass, and what
+/// has coordinates of its own stays in them.
+TEST(Visual, AShapeBesideAnInertiaIsOneToo)
+{
+    const std::size_t from = arm.find("visual = ["), to = arm.find("[world]");
+    const std::string bare = arm.substr(0, from) + arm.substr(to);
+    const auto with = [&](const std::string& shape) {
+        return parse_scenario(test::replaced(bare, "opacity", "shape = " + shape + "\nopacity"), "t.toml");
+    };
+    const Matrix4 mass = parse_scenario(bare, "t.toml").scenario->model.bodies()[0].mass;
+    const auto expect = [&](const std::string& shape, double least, double most) {
+        const ScenarioResult result = with(shape);
+        ASSERT_TRUE(result.scenario.has_value()) << shown(result);
+        EXPECT_TRUE(result.diagnostics.empty()) << shown(result);
+        EXPECT_EQ(result.scenario->model.bodies()[0].mass, mass);
+        const Reach reach = reach_of(united(drawn_of(*result.scenario)[0]));
+        EXPECT_NEAR(reach.least[0], least, 1e-15) << shape;
+        EXPECT_NEAR(reach.most[0], most, 1e-15) << shape;
+    };
+    expect("{ box = [1, 0.2, 0.1] }", -0.4, 0.6);
+    expect("{ parts = [{ box = [1, 1, 1], position = [2, 0, 0] }, { box = [2, 2, 2] }] }", -1, 2.5);
+    EXPECT_EQ(with("{ box = [1, 0.2, 0.1] }").scenario->model.bodies()[0].volume, 1 * 0.2 * 0.1);
+}
+
+TEST(Visual, AShapeBesideAnInertiaWeighsNothing)
+{
+    const std::string
+        box = "shape = { box = [1, 1, 1] }\n",
+        two = "shape = { parts = [{ box = [1, 1, 1] }, { box = [1, 1, 1], position = [2,0,0] }] }\n";
+    const std::string moments = "mass = 3\ninertia = [0.001, 0.3, 0.3]\ncenter_of_mass = [0.1, 0, 0]\n";
+    const auto expect = [&](const std::string& keys, std::string_view code, const std::string& place) {
+        const ScenarioResult result = parse_scenario(test::replaced(arm, moments, keys), "test.toml");
+        const Diagnostic* d = find(result, code);
+        ASSERT_NE(d, nullptr) << keys << shown(result);
+        EXPECT_EQ(result.diagnostics.size(), 1u) << shown(result);
+        EXPECT_NE(d->message.find(place), std::string::npos) << shown(result);
+    };
+    expect(box + moments + "density = 2\n", "mass-conflict", "density");
+    expect(box + "inertia = [0.001, 0.3, 0.3]\n", "mass-missing", "'mass'");
+    expect(two + "mass = 3\ninertia = [0.001, 0.3, 0.3]\n", "mass-missing", "'center_of_mass'");
+    expect("shape = { box = [1, 1, 1], density_field = \"2\" }\n" + moments, "mass-conflict",
+           "density of its own");
 }
 
 TEST(Visual, OfAMeshNeedNotBeClosedAndIsKeptByTheRun)

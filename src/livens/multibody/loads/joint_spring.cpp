@@ -174,7 +174,8 @@ void check_joint_spring(const Load& load, const JointSpring& spring, const Joint
     check_not_negative(load, limits.damping, "limit_damping");
     check_load_vector(load, {spring.rest, spring.preload, 0}, "rest and preload");
     if (!(limits.low < limits.high))
-        throw InputError({"joint-limits", "load[" + load.name + "].limits", "limits are not in order",
+        throw InputError({"joint-limits", "load[" + load.name + "].limits",
+                          "the limits of '" + load.name + "' are not in order",
                           to_text(limits.low) + ", " + to_text(limits.high),
                           "the lower one first, then the upper one", "", ""});
 }

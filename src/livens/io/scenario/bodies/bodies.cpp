@@ -60,36 +60,54 @@ void check_moments(const Section& body)
                    "'second_moment' of " + body.label() + " must be symmetric");
 }
 
+/// Of a body whose shape says how it looks, and `mass` and `inertia` how it moves. Parts of it that may weigh
+/// differently would say the mass a second time.
+void check_shape_beside_inertia(const Section& body)
+{
+    const Section* shape = only_section(body, "shape");
+    body.refuse({"density"}, "mass-conflict", "'mass' and 'inertia' are stated");
+    if (shape != nullptr && density_by(*shape) != DensityBy::body)
+        body.error("inertia", "mass-conflict",
+                   "'inertia' of " + body.label() + " has no meaning: its shape has a density of its own",
+                   {"a shape beside 'inertia' has no effect on mass and inertia",
+                    "leave out 'inertia', or the densities of the shape"});
+    if (!body.has("mass"))
+        body.error("inertia", "mass-missing", body.label() + " has an inertia, but no 'mass'",
+                   {"beside 'inertia' a shape has no effect on mass and inertia", "add mass = 3 (kg)"});
+    // A mesh has a centre of mass of its own: that of the body would move away from it without a word.
+    if (shape != nullptr && (shape->has("mesh") || shape->has("parts")) && !body.has("center_of_mass"))
+        body.error("inertia", "mass-missing",
+                   body.label() + " has a shape beside its inertia, but no 'center_of_mass'",
+                   {"beside 'inertia' the shape stays in its own coordinates and does not say where the "
+                    "centre of mass is",
+                    "add center_of_mass = [..], in m, in the coordinates of the shape"});
+}
+
+void check_density(const Section& body)
+{
+    body.at_most_one({"density", "mass"}, "mass-conflict");
+    const Section* shape = only_section(body, "shape");
+    const DensityBy by = shape != nullptr ? density_by(*shape) : DensityBy::body;
+    if (by == DensityBy::shape)
+        body.refuse({"density", "mass"}, "mass-conflict",
+                    shape->has("densities") ? "the regions of the mesh have their own densities"
+                                            : "'density_field' of the shape gives it already");
+    else if (by == DensityBy::both && body.has("mass"))
+        body.refuse({"mass"}, "mass-conflict", "'density_field' says what parts weigh");
+    else if (by == DensityBy::both && !body.has("density"))
+        body.error("shape", "mass-missing",
+                   body.label() + " has no 'density', and parts of its shape have no 'density_field'");
+    else if (!body.has("density") && !body.has("mass"))
+        body.error("shape", "mass-missing", body.label() + " has a shape, but neither 'density' nor 'mass'",
+                   {"", "give one of them: density = 7850 (kg/m^3, steel) or mass = 3 (kg)"});
+}
+
 /// Mass and inertia must follow from exactly one set of keys.
 void check_mass(const Section& body)
 {
     if (has_moments(body)) return check_moments(body);
-    if (body.has("shape")) {
-        body.at_most_one({"density", "mass"}, "mass-conflict");
-        // Two statements of one quantity may contradict each other, and nothing says which is meant.
-        if (body.has("inertia"))
-            body.error(
-                "shape", "mass-conflict", "'shape' and 'inertia' of " + body.label() + " exclude each other",
-                {"the inertia follows from a 'shape'",
-                 "where mass and inertia are known and the shape is to be seen, write visual = instead "
-                 "of shape ="});
-        const Section* shape = only_section(body, "shape");
-        const DensityBy by = shape != nullptr ? density_by(*shape) : DensityBy::body;
-        if (by == DensityBy::shape)
-            body.refuse({"density", "mass"}, "mass-conflict",
-                        shape->has("densities") ? "the regions of the mesh have their own densities"
-                                                : "'density_field' of the shape gives it already");
-        else if (by == DensityBy::both && body.has("mass"))
-            body.refuse({"mass"}, "mass-conflict", "'density_field' says what parts weigh");
-        else if (by == DensityBy::both && !body.has("density"))
-            body.error("shape", "mass-missing",
-                       body.label() + " has no 'density', and parts of its shape have no 'density_field'");
-        else if (!body.has("density") && !body.has("mass"))
-            body.error("shape", "mass-missing",
-                       body.label() + " has a shape, but neither 'density' nor 'mass'",
-                       {"", "give one of them: density = 7850 (kg/m^3, steel) or mass = 3 (kg)"});
-        return;
-    }
+    if (body.has("shape"))
+        return body.has("inertia") ? check_shape_beside_inertia(body) : check_density(body);
     body.refuse({"density"}, "mass-conflict", "the body has no shape");
     for (const std::string key : {"mass", "inertia"})
         if (!body.has(key))
@@ -156,7 +174,7 @@ Matrix4 read_moments(const Section& body)
 
 MassProperties read_mass(const Section& body, const Solid& shape)
 {
-    if (only_section(body, "shape") != nullptr) {
+    if (!body.has("inertia")) {
         const MassProperties all =
             body.has("mass") ? with_mass(shape.properties, body.number("mass")) : shape.properties;
         return shape.has_own_origin && !body.has("center_of_mass")
@@ -166,27 +184,46 @@ MassProperties read_mass(const Section& body, const Solid& shape)
     return {body.number("mass"), body.vector("center_of_mass"), read_symmetric(body, "inertia")};
 }
 
-/// Where `center_of_mass` moves the shape to.
+/// From the shape's own coordinates to those of the body.
+Vector3 shift_of_shape(const Section& body, const Solid& shape)
+{
+    const bool stays = body.has("inertia") && shape.has_own_origin;
+    return stays || !body.has("center_of_mass")
+               ? Vector3{}
+               : body.vector("center_of_mass") - shape.properties.center_of_mass;
+}
+
+/// Surfaces are computed in the shape's own coordinates, and move with its centre.
 std::vector<NamedSurface> surfaces_in_body(const Section& body, const Solid& shape)
 {
     std::vector<NamedSurface> surfaces = shape.surfaces;
-    if (!body.has("center_of_mass")) return surfaces;
-    // Surfaces are computed in the shape's own coordinates, and move with its centre.
-    const Vector3 d = body.vector("center_of_mass") - shape.properties.center_of_mass;
-    for (NamedSurface& s : surfaces) s.moments = moved(s.moments, identity<3>(), d);
+    const Vector3 d = shift_of_shape(body, shape);
+    if (d != Vector3{})
+        for (NamedSurface& s : surfaces) s.moments = moved(s.moments, identity<3>(), d);
     return surfaces;
 }
 
-/// Likewise, and with the body's mass where that is stated.
+/// Likewise, and with the body's mass where that is stated. What the parts weigh is unknown beside `inertia`.
 std::vector<ShapePart> parts_in_body(const Section& body, const Solid& shape)
 {
+    if (body.has("inertia")) return {};
     std::vector<ShapePart> parts = shape.parts;
     for (ShapePart& part : parts) {
         if (body.has("mass")) part.mass *= body.number("mass") / shape.properties.mass;
-        if (body.has("center_of_mass"))
-            part.center += body.vector("center_of_mass") - shape.properties.center_of_mass;
+        part.center += shift_of_shape(body, shape);
     }
     return parts;
+}
+
+/// Outlines are drawn about the body's centre of mass, and those of shapes about their own.
+Outline outline_in_body(const Section& body, const Solid& shape)
+{
+    if (!body.has("inertia") || !shape.has_own_origin) return shape.outline;
+    const Vector3 d = shape.properties.center_of_mass - body.vector("center_of_mass");
+    Outline whole;
+    whole.parts = shape.outline.parts.empty() ? std::vector{shape.outline} : shape.outline.parts;
+    for (Outline& part : whole.parts) part.place += d;
+    return whole;
 }
 
 /// Directors that are skew by so little were meant perpendicular, and rounded.
@@ -244,8 +281,9 @@ Table body_table()
         "[[body]]",
         "A rigid body or a point mass. The body frame has its origin at the reference point and its axes "
         "along the three directors d1, d2, d3; body coordinates are coordinates in this frame. Mass "
-        "properties come either from a `shape` with `density` or `mass`, or from `mass` and `inertia` "
-        "without a shape. Orientation is given by one of `directors`, `quaternion` and `rotation_vector`; by "
+        "properties come either from a `shape` with `density` or `mass`, or from `mass` and `inertia`; a "
+        "`shape` beside `inertia` is drawn and gives surfaces for loads. Orientation is given by one of "
+        "`directors`, `quaternion` and `rotation_vector`; by "
         "default the body axes are the world axes. Position, orientation and velocities are initial values.",
         {Key{"name", types::text, "Name by which joints, loads and results refer to the body; not `world`."}
              .needed(),
@@ -254,11 +292,11 @@ Table body_table()
          Key{"mass", types::number, "Mass of the body. Excludes `density`.", "kg"}.within(positive),
          Key{"center_of_mass", types::vector3,
              "Centre of mass in body coordinates. A shape is moved so that its centre of mass lies here; "
-             "without this key, meshes and unions keep their own coordinates.",
+             "without this key, or beside `inertia`, meshes and unions keep their own coordinates.",
              "m", "[0, 0, 0]"},
          Key{"inertia", types::principal_or_full,
              "Inertia about the centre of mass, in body axes: three principal moments or the full matrix. "
-             "Only without a shape.",
+             "Needs `mass`, and beside a mesh or union `center_of_mass`.",
              "kg m^2"},
          {"first_moment", types::vector3,
           "First moment of mass S: mass times the position of the centre of mass relative to the reference "
@@ -360,7 +398,7 @@ void read_bodies(Builder& builder, bool with_surfaces)
             const Solid shape = read_shape(section, builder.meshes(), with_surfaces);
             body.index = builder.model().add_body(build_body(section, named->text, shape));
             warn_of_rounded_directors(builder, section);
-            Outline outline = shape.outline;
+            Outline outline = outline_in_body(section, shape);
             read_look(section, builder.meshes(), outline);
             builder.outlines().push_back(std::move(outline));
             builder.parts().push_back(parts_in_body(section, shape));
