@@ -192,6 +192,23 @@ void refuse_undetermined(Window& window, ConditionNumbersOfLast& last, SolveRepo
         "duration, or the state at one end";
 }
 
+/// The equations of a march as those of one window, at its motion: of all elements, or of radau the last one.
+void measure_at_solution(const ModelTables& tables, const Motion& motion, const Ends& ends,
+                         const ElementRule& rule, SolveReport& report, const std::function<bool()>& goes_on)
+{
+    TimeMesh mesh = motion.mesh;
+    Ends from = ends;
+    if (rule.points == Points::radau) {
+        const int n = mesh.n_elements(), e = ends.is_backwards() ? 0 : n - 1;
+        (ends.is_backwards() ? from.end : from.start) = motion.at_end(ends.is_backwards() ? 1 : n - 1);
+        mesh.ends = {mesh.ends[e], mesh.ends[e + 1]};
+    }
+    NodalWindow whole(tables, mesh, from, rule);
+    if (whole.open(0, mesh.n_elements(), report) &&
+        whole.start_from([&](double t) { return motion.at(t); }) && whole.equations().residual())
+        whole.equations().measure_condition(report, goes_on);
+}
+
 Solution solve_by_windows(const Model& model, const Problem& problem, const TimeMesh& given, const Ends& ends,
                           const Method& method, const SolveOptions& options)
 {
@@ -214,9 +231,10 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     ConditionNumbersOfLast last(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
     if (!ends.has_state() && !is_mixed && report.status != SolveStatus::cancelled)
         refuse_undetermined(*window, last, report);
-    // Else the last window is all there is, or nothing: single elements of a march form no matrix.
-    const bool is_whole = !std::holds_alternative<Lobatto>(method) || !ends.has_state() ||
-                          (mesh.n_elements() > 1 && (w.length == 0 || w.length >= mesh.n_elements()));
+    // Else the last window is all there is; single elements of a march form no matrix.
+    const bool is_whole = is_mixed || !ends.has_state() ||
+                          (std::holds_alternative<Lobatto>(method) && mesh.n_elements() > 1 &&
+                           (w.length == 0 || w.length >= mesh.n_elements()));
     if (options.condition && report.converged() && is_whole)
         last.measure(report,
                      [&](const auto& goes_on) { window->equations().measure_condition(report, goes_on); });
@@ -224,12 +242,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     solution.motion = window->take_motion();
     if (options.condition && report.converged() && !is_whole)
         last.measure(report, [&](const auto& goes_on) {
-            // the march's equations as one window of all elements, at the solution
-            NodalWindow whole(tables, mesh, ends, rule_of(method));
-            const Motion& motion = solution.motion;
-            if (whole.open(0, mesh.n_elements(), report) &&
-                whole.start_from([&](double t) { return motion.at(t); }) && whole.equations().residual())
-                whole.equations().measure_condition(report, goes_on);
+            measure_at_solution(tables, solution.motion, ends, rule_of(method), report, goes_on);
         });
     if (last.is_stopped()) {
         report.status = SolveStatus::cancelled;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Condition numbers of the whole matrix of lobatto.
+// Condition numbers of the matrices of lobatto and radau.
 #include <gtest/gtest.h>
 #include <mechanisms.h>   // of all tests, not of this folder
 
@@ -90,6 +90,26 @@ Solution with_condition(const Model& model, double end, int n, int degree)
     Solution s = solve(model, {model.start()}, make_time_mesh(0, end, n), Lobatto{degree}, options);
     EXPECT_TRUE(s.report.converged()) << s.report.message;
     return s;
+}
+
+/// Elements of radau know no element behind: the matrix is that of the last one alone.
+TEST(ConditionNumber, OfRadauIsThatOfTheLastElement)
+{
+    const Model model = tests::two_bricks();
+    SolveOptions options;
+    options.condition = true;
+    for (const int degree : {2, 3, 4, 6}) {
+        const Solution s = solve(model, {model.start()}, make_time_mesh(0, 0.4, 5), Radau{degree}, options);
+        ASSERT_TRUE(s.report.converged());
+        const Solution last = solve(model, {s.motion.at_end(4)},
+                                    make_time_mesh(s.motion.mesh.ends[4], 0.4, 1), Radau{degree}, options);
+        EXPECT_GT(s.report.condition_2, 1) << degree;
+        EXPECT_NEAR(s.report.condition_1 / last.report.condition_1, 1, 1e-6) << degree;
+        EXPECT_NEAR(s.report.condition_2 / last.report.condition_2, 1, 1e-3) << degree;
+        const Solution first =
+            solve(model, {model.start()}, make_time_mesh(0, 0.08, 1), Radau{degree}, options);
+        EXPECT_GT(std::abs(s.report.condition_1 / first.report.condition_1 - 1), 1e-6) << "a control";
+    }
 }
 
 TEST(ConditionNumber, GrowsWithTheSquareOfTheNumberOfElements)
