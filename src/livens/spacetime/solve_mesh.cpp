@@ -231,10 +231,8 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     ConditionNumbersOfLast last(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
     if (!ends.has_state() && !is_mixed && report.status != SolveStatus::cancelled)
         refuse_undetermined(*window, last, report);
-    // Else the last window is all there is; single elements of a march form no matrix.
-    const bool is_whole = is_mixed || !ends.has_state() ||
-                          (std::holds_alternative<Lobatto>(method) && mesh.n_elements() > 1 &&
-                           (w.length == 0 || w.length >= mesh.n_elements()));
+    // A march forms no matrix of single elements, and where it divided some, not of all.
+    const bool is_whole = is_mixed || !ends.has_state();
     if (options.condition && report.converged() && is_whole)
         last.measure(report,
                      [&](const auto& goes_on) { window->equations().measure_condition(report, goes_on); });

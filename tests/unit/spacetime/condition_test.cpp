@@ -112,6 +112,22 @@ TEST(ConditionNumber, OfRadauIsThatOfTheLastElement)
     }
 }
 
+/// An element that is divided on the way, in a window that had room for more, is no window of all.
+TEST(ConditionNumber, OfADividedMeshIsThatOfAllItsElements)
+{
+    const Model model = tests::two_bricks();
+    SolveOptions options;
+    options.condition = true;
+    Lobatto method{3};
+    method.window = 2;
+    const Solution s = solve(model, {model.start()}, make_time_mesh(0, 3, 1), method, options);
+    ASSERT_TRUE(s.report.converged()) << s.report.message;
+    ASSERT_GT(s.motion.mesh.n_elements(), 2);
+    const Solution given = solve(model, {model.start()}, s.motion.mesh, method, options);
+    EXPECT_EQ(given.motion.mesh.n_elements(), s.motion.mesh.n_elements());
+    EXPECT_NEAR(s.report.condition_1 / given.report.condition_1, 1, 1e-6);
+}
+
 TEST(ConditionNumber, GrowsWithTheSquareOfTheNumberOfElements)
 {
     const Model model = tests::free_box();
