@@ -84,12 +84,13 @@ SOLUTION = {
     "info summary stats statistics": ("figures",),
 }
 BODY = {
-    "pos x xyz r location translation coordinates": ("position",),
+    "pos x xyz location translation coordinates": ("position",),
+    "r": "the position is sol['@'].position, the rotation matrices are sol['@'].rotation",
     "vel v xdot speed linearvelocity": ("velocity",),
     "omega w angvel spin rotationrate": ("angular_velocity",),
     "quat orientation quaternions": ("quaternion",),
     "com cm cog centerofgravity centreofmass": ("center_of_mass",),
-    "rotationmatrix r dcm matrix attitude rotation rotmat axes": ("rotation", "directors"),
+    "rotationmatrix dcm matrix attitude rotation rotmat axes": ("rotation", "directors"),
     "euler rpy eulerangles angles rollpitchyaw": ("euler", "from its quaternion (w, x, y, z) by SciPy: Rotation.from_quat(q[:, [1, 2, 3, 0]]).as_euler('ZYX')"),
     "acc accel a xddot acceleration linearacceleration": ("acceleration",),
     "kineticenergy ke energy kinetic potential": "a sensor reads it: m.add_energy_sensor(\"E\", \"@\") before solving; "

@@ -120,6 +120,7 @@ const std::set<std::string_view> without{
     "not-in-equilibrium",
     "not-in-this-version",
     "parameter-set",
+    "parameter-unit",
     "picture",
     "point-with-directors",
     "python-function",

@@ -232,6 +232,7 @@ TEST(JointLimits, AreToldWhereTheyAreReached)
         return all;
     };
     const std::string reached = notes("[-0.4, inf]");
+    EXPECT_EQ(notes("[\"-0.4 rad\", \"inf\"]"), notes("[-0.4, inf]"));
     EXPECT_NE(reached.find("'j' was beyond its limits by "), std::string::npos) << reached;
     EXPECT_NE(reached.find("5000 N m/rad"), std::string::npos) << reached;
     EXPECT_EQ(notes("[-4, 4]").find("limits"), std::string::npos);

@@ -234,6 +234,8 @@ std::vector<test::Case> test::cases_of_laws()
         {"joint-placement", bushing(unit), "[[load]]"},
         {"joint-frames", bushing(unit + "frames = [{}]"), "[{}]"},
         {"curve-points", slotted("points = [[0, 0, 0]]"), "{ points"},
+        {"curve-points", slotted("closed = true, points = [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [1, 0, 1e-16]]"),
+         "{ closed"},
         {"curve-straight-back", slotted("points = [[0, 0, 0], [1, 0, 0], [0, 0, 0]]"), "{ points"},
         {"curve-crosses-itself", slotted("points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0.5, -1, 0]]"),
          "\"s\"\ntype"},

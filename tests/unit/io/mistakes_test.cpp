@@ -71,7 +71,7 @@ TEST(Mistakes, OfValuesAreShownAsTheyAreWritten)
              Mistake{"{ box = [1, 0.05, 0.05] }", "\"cone\"", "shape = { cone = .. }"},
              Mistake{"{ box = [1, 0.05, 0.05] }", "[1, 0.05, 0.05]", "shape = { box = [1, 0.05, 0.05] }"},
              Mistake{"mass = 3\n", "\n", "mass = 3 (kg)"},
-             Mistake{mass, "mass = 3\ninertia = [1, 1, 1]", "visual = instead"},
+             Mistake{mass, "mass = 3\ndensity = 2\ninertia = [1, 1, 1]", "density"},
              Mistake{"type = \"revolute\"", "type = revolute", "\"revolute\""},
              Mistake{"position = [0.5, 0, 0]", "position = 0.5", "position = [0.5, 0, 0] along x"},
              Mistake{"", "[[load]]\ntype = \"torque\"\nbody = \"arm\"\nexpression = \"t\"",

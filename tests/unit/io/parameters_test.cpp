@@ -328,6 +328,22 @@ TEST(ParametersOfScenarios, ThatAreWrongAreToldOfOnce)
     EXPECT_EQ(set.diagnostics.size(), 1u) << shown(set);
 }
 
+/// `--set L=500` beside "400 mm" is taken as 500 m, which hardly anybody means.
+TEST(ParametersOfScenarios, APlainNumberLikeTheOneBesideAUnitIsNoticed)
+{
+    const auto codes = [](const std::string& value) {
+        std::string all;
+        for (const Diagnostic& one : parse_scenario(swing, "t", {}, {{"L", value}}).diagnostics)
+            all += one.code + ";";
+        return all;
+    };
+    ASSERT_NE(swing.find("L = \"400 mm\""), std::string::npos);
+    EXPECT_EQ(codes("500"), "parameter-unit;");
+    EXPECT_EQ(codes("4000"), "parameter-unit;");
+    for (const char* meant : {"0.5", "0.004", "4", "500 mm", "0.5 m", "0"})
+        EXPECT_EQ(codes(meant).find("parameter-unit"), std::string::npos) << meant;
+}
+
 TEST(ParametersOfScenarios, WordsAndLoneNumbersAreNoExpressions)
 {
     const std::string plain = replaced(replaced(valid_scenario, "mass = 2", "mass = \"heavy\""),

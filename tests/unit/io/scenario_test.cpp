@@ -476,11 +476,11 @@ TEST(ScenarioCodes, WarningsLeaveTheScenarioAlone)
 
 /// Of mesh_scenario_test.cpp and parameters_test.cpp, but for the last lines.
 const std::set<std::string_view> codes_of_others{
-    "parameter-name",     "parameter-ring",    "parameter-set", "parameter-unused", "repeat-braces",
-    "repeat-index",       "density-field",     "mesh-file",     "mesh-format",      "mesh-inverted",
-    "mesh-open",          "mesh-path",         "mesh-region",   "mesh-unit",        "surface-unknown",
-    "mesh-non-manifold",  "mesh-self-contact",   // soundness_test.cpp of geometry
-    "not-in-this-version"};                      // see schema_test.cpp
+    "parameter-name",     "parameter-ring",    "parameter-set",     "parameter-unit", "parameter-unused",
+    "repeat-braces",      "repeat-index",      "density-field",     "mesh-file",      "mesh-format",
+    "mesh-inverted",      "mesh-open",         "mesh-path",         "mesh-region",    "mesh-unit",
+    "surface-unknown",    "mesh-non-manifold", "mesh-self-contact",   // soundness_test.cpp of geometry
+    "not-in-this-version"};                                           // see schema_test.cpp
 
 /// The reader refuses these before the core sees them, or only calls of the library lead to them; a missing
 /// backend depends on the build, and files of results have tests of their own.

@@ -118,9 +118,10 @@ TEST(ConditionNumber, OfADividedMeshIsThatOfAllItsElements)
     const Model model = tests::two_bricks();
     SolveOptions options;
     options.condition = true;
+    options.judge = false;   // this mesh is too coarse to be believed
     Lobatto method{3};
     method.window = 2;
-    const Solution s = solve(model, {model.start()}, make_time_mesh(0, 3, 1), method, options);
+    const Solution s = solve(model, {model.start()}, make_time_mesh(0, 1.5, 1), method, options);
     ASSERT_TRUE(s.report.converged()) << s.report.message;
     ASSERT_GT(s.motion.mesh.n_elements(), 2);
     const Solution given = solve(model, {model.start()}, s.motion.mesh, method, options);

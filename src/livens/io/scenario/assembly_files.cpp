@@ -62,8 +62,8 @@ Table include_table()
         "prefix before their names, displaced and rotated as a whole. Names in that file refer to its own "
         "parts, `world` is the world. Whatever the file states in the world is displaced with it: points and "
         "axes, forces in world axes, prescribed paths, and the axes of its sensors. The file may be a "
-        "complete "
-        "scenario: its `title`, `[time]` and `[method]` are not used; its gravity equals that of this file "
+        "complete scenario: its `title`, `[time]`, `[method]`, `[start]` and `[end]` are not used; its "
+        "gravity equals that of this file "
         "or is "
         "not stated.",
         {Key{"file", types::text,
@@ -241,7 +241,7 @@ std::optional<OpenedPart> Assembly::open_file(const Section& include)
         place_in(*root, file);
         const std::string parent = std::filesystem::path(path).parent_path().generic_string();
         return OpenedPart{nullptr, std::move(root),      "'" + path + "'", parent.empty() ? "" : parent + "/",
-                      path,    overrides_of(include)};
+                          path,    overrides_of(include)};
     } catch (const InputError& error) {
         const Complaint& c = error.complaint();
         include.error("file", c.code, c.message + (c.value.empty() ? "" : " (" + c.value + ")"),

@@ -20,14 +20,28 @@ namespace livens {
 
 namespace {
 
-constexpr int steps_a_piece = 8;   // of the normals' turn, whose error is rounding then
-constexpr double flat = 1e-14;     // of a unit vector, out of its plane: nothing turns then
-constexpr int overlap = 30;        // knots, by which what a spline does at its ends has died away
+constexpr double repeated = 1e-12;   // of the size of a curve: the same point but for rounding
+constexpr int steps_a_piece = 8;     // of the normals' turn, whose error is rounding then
+constexpr double flat = 1e-14;       // of a unit vector, out of its plane: nothing turns then
+constexpr int overlap = 30;          // knots, by which what a spline does at its ends has died away
 
 [[noreturn]] void refuse_curve(const std::string& message, const std::string& value, const std::string& bound,
                                const std::string& code = "curve-points")
 {
     throw InputError({code, "joint.curve", message, value, bound, "", ""});
+}
+
+void refuse_repeated_points(const std::vector<Vector3>& points, bool is_closed)
+{
+    double size = 0;
+    for (const Vector3& point : points) size = std::max(size, norm(point - points.front()));
+    for (std::size_t k = 1; k < points.size(); ++k)
+        if (!(norm(points[k] - points[k - 1]) > repeated * size))
+            refuse_curve("a curve has a point twice in a row",
+                         "points " + std::to_string(k) + " and " + std::to_string(k + 1), "");
+    if (is_closed && !(norm(points.back() - points.front()) > repeated * size))
+        refuse_curve("the last point of a closed curve is its first again",
+                     "point " + std::to_string(points.size()), "it is left out");
 }
 
 Vector3 unit(const Vector3& v) { return 1 / norm(v) * v; }
@@ -47,11 +61,10 @@ public:
         const auto point = [&](int k) {
             return points[static_cast<std::size_t>((k - around + n * overlap) % n)];
         };
+        refuse_repeated_points(points, is_closed);
         std::vector<double> knots{0};
         for (int k = 1; k < n_knots; ++k) {
             const double chord = norm(point(k) - point(k - 1));
-            if (!(chord > 0))
-                refuse_curve("a curve has a point twice in a row", "point " + std::to_string(k + 1), "");
             knots.push_back(knots.back() + chord);
         }
         const double begin = knots[static_cast<std::size_t>(around)];

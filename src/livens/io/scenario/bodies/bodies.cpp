@@ -320,7 +320,7 @@ Table body_table()
          Key{"end", types::table, "Placement at the final time."}.holding(end)}};
     for (const Key& key : color_keys("Colour in pictures: a CSS colour name, `\"#rrggbb\"`, or red, green "
                                      "and blue. Default: a colour that no other body has.",
-                                     "Opacity in pictures; 1 is opaque."))
+                                     "Opacity in pictures. Default: 1, opaque."))
         body.keys.push_back(key);
     body.keys.insert(body.keys.begin() + 6, end.keys.begin(), end.keys.end());
     return body;

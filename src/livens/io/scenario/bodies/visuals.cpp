@@ -51,7 +51,7 @@ Outline outline_of(const Section& visual, MeshStore& meshes)
 std::vector<Key> color_keys(const char* color, const char* opacity)
 {
     return {Key{"color", types::color, color}.within({0, 1}),
-            Key{"opacity", types::number, opacity, "", "1"}.within({0, 1, true})};
+            Key{"opacity", types::number, opacity}.within({0, 1, true})};
 }
 
 Key visual_key(const char* doc)

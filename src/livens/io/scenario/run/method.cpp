@@ -116,14 +116,18 @@ const std::vector<MethodKind>& method_kinds()
         {{"lobatto",
           "space-time finite elements on Gauss-Lobatto points; their order at element ends is twice the "
           "degree",
-          {Key{"degree", types::integer, "Polynomial degree of the elements.", "", "4"}.within({1, 16}),
+          {Key{"degree", types::integer,
+               "Polynomial degree of the elements. With `accuracy` it is chosen unless given.", "", "4"}
+               .within({1, 16}),
            window("1", "; it does not change the equations. With conditions at both ends all elements are "
                        "solved together in any case.")}},
          make_lobatto},
         {{"radau",
           "space-time finite elements on Radau points; their order at element ends is twice the degree minus "
           "1; they damp vibrations that they do not resolve, and need the state at the initial time",
-          {Key{"degree", types::integer, "Polynomial degree of the elements.", "", "4"}.within({1, 8})}},
+          {Key{"degree", types::integer,
+               "Polynomial degree of the elements. With `accuracy` it is chosen unless given.", "", "4"}
+               .within({1, 8})}},
          make_radau},
         {{"auto",
           "lobatto, or radau if fast decay or irrelevant vibrations would dictate the length of lobatto's "
@@ -202,12 +206,14 @@ const std::vector<OptionKey>& option_keys()
         {Key{"growth", types::truth,
              "Whether to measure how a small change of the initial state grows, by motions that begin beside "
              "this one. From it follows the horizon: the time after which rounding errors, which no computer "
-             "avoids, have grown so large that the motion is one of many. Costs half as much as the motion, "
+             "avoids, have grown so large that the motion can no longer be predicted. Costs half as much as "
+             "the motion, "
              "or up to three times as much where bodies turn over. Default: true with `accuracy` of "
              "`[time]`, else false."},
          &SolveOptions::growth},
         {Key{"looks", types::truth,
-             "Whether load laws are inspected inside elements, between the points at which they are "
+             "Whether the laws of loads and drives are inspected inside elements, between the points at "
+             "which they are "
              "evaluated. `false` treats all laws as smooth; it exists for comparison.",
              "", "true"},
          &SolveOptions::look_at_laws},
@@ -262,8 +268,7 @@ void write_degree(JsonWriter& json, int degree) { write_count(json, "degree", de
 
 Table method_table()
 {
-    std::vector<Key> keys{
-        {"family", types::choice, "Default: auto with `accuracy`, else lobatto", "", "lobatto"}};
+    std::vector<Key> keys{{"family", types::choice, "Default: lobatto; with `accuracy` auto", "", "lobatto"}};
     for (const OptionKey& one : option_keys()) keys.push_back(one.key);
     return Table{"[method]",
                  "Integration method and its options. The defaults suit most models. Choose radau to damp "

@@ -199,8 +199,8 @@ end = "5*2*pi*sqrt(2*L/(3*g))"
   must have the dimension of the key. An expression without any unit is in SI units, like a plain number.
   Beside numbers with units, a number without a unit is dimensionless: with `L = 0.4` write `"L/2 + 0.03"`,
   with `L = "400 mm"` write `"L/2 + 30 mm"`.
-- Angles are ratios, so that `"v/R"` is an angular velocity. But 3 Hz is not one without its `2*pi`, and 30
-  deg is not a ratio.
+- An angle counts as its number of radians, so that `"v/R"` is an angular velocity and `"R*angle"` a length.
+  A frequency in Hz is no angular velocity: multiply it by `2*pi`. A key without a unit takes no angle.
 - A unit after a number takes precedence: `"2 m"` is two metres even if `m` is a parameter; `"2*m"` is twice
   the parameter.
 - In formulas of loads and drives, parameters are numbers in SI units.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "livens/base/text.h"
 #include "livens/io/scenario/schema/other_words.h"
@@ -130,9 +131,19 @@ private:
         }
         if (node.kind != NodeKind::text) return wrong_type(node);
         double x = 0;
+        if (key_.may_be_infinite && is_infinite(node.text(), x)) return accept(node, x);
         const bool is_read =
             is_computed(node.text(), parameters_) ? read_expression(node, x) : read_quantity(node, x);
         return is_read && accept(node, x);
+    }
+
+    /// In quotes, as people write it beside numbers with units.
+    static bool is_infinite(std::string_view text, double& x)
+    {
+        x = text.starts_with('-') ? -std::numeric_limits<double>::infinity()
+                                  : std::numeric_limits<double>::infinity();
+        if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+        return text == "inf";
     }
 
     bool read_integer(const Node& node)

@@ -4,6 +4,7 @@
 #include "livens/io/scenario/text/parameters.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "livens/base/text.h"
@@ -115,6 +116,31 @@ void Parameters::set(const Override& given, Findings& findings)
     one.state = ParameterState::waits;
 }
 
+namespace {
+
+/// "400 mm" is 0.4 m, and 500 is nearer to 400 than to 0.4.
+bool is_like_written(const std::string& file_text, double in_file, double value)
+{
+    double written = 0;
+    const char* const end = file_text.data() + file_text.size();
+    if (std::from_chars(file_text.data(), end, written).ec != std::errc() || written == in_file) return false;
+    const double to_written = std::abs(std::log(std::abs(value / written))),
+                 to_value = std::abs(std::log(std::abs(value / in_file)));
+    return to_written < to_value;
+}
+
+void warn_of_unit(const Parameters::One& one, Findings& findings)
+{
+    const std::string unit = si_unit_of(one.amount), value = to_text(one.amount.value);
+    findings.warning(one.set_by.place, "parameter-unit",
+                     "the parameter '" + one.name + "' is set to " + value + " " + unit +
+                         ", and the file has \"" + one.file_text + "\"",
+                     {"a plain number is in the SI unit of the parameter",
+                      "write the unit, as in \"" + value + " " + unit + "\" or that of the file"});
+}
+
+}   // namespace
+
 /// What an override makes of it: a plain number has the unit of the file's own value.
 Computed Parameters::settled(One& one) const
 {
@@ -131,6 +157,7 @@ Computed Parameters::settled(One& one) const
         found.amount = own.amount;
         found.amount.value = value;
         one.is_in_unit_of_file = own.amount.has_unit;
+        one.is_like_written = own.amount.has_unit && is_like_written(one.file_text, own.amount.value, value);
     } else if (own.amount.has_unit && own.amount.powers != found.amount.powers) {
         return {{},
                 "unit",
@@ -158,6 +185,7 @@ void Parameters::compute_one(std::size_t first, Findings& findings)
             const bool is_of_file = !one.is_set;
             const std::string said =
                 is_of_file || one.set_by.said_by.empty() ? "" : " (" + one.set_by.said_by + ")";
+            if (one.is_like_written) warn_of_unit(one, findings);
             if (!found.code.empty() && !found.error.empty())
                 findings.error(is_of_file ? one.place : one.set_by.place, found.code,
                                "the parameter '" + one.name + "' cannot be \"" + one.text + "\"" + said +
