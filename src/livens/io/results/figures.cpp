@@ -93,7 +93,7 @@ constexpr Figure figures[] = {
      &Verdict::growth, false, 2},
     {"horizon", "s",
      "time at which an initial error of 1e-13, where rounding can make one, has grown to 1e-2: later, the "
-     "motion is one of many; nan if that is after the end or was not measured",
+     "motion can no longer be predicted; nan if that is after the end or was not measured",
      &Verdict::horizon, false, 2},
     {"largest_kinetic_energy", "J", "largest over element ends and instants between",
      &BalanceFigures::largest_kinetic},

@@ -311,9 +311,7 @@ Key step_key(const KeyType& numbers)
 {
     return Key{"step", types::table, "Smooth step with two continuous derivatives."}.holding(
         {"step of a drive",
-         "A change by `rise` between two times, from the value of the coordinate at the initial time; "
-         "constant "
-         "before and after.",
+         "A change by `rise` from the initial value between two times; constant before and after.",
          {Key{"from", types::number, "Beginning of the change.", "s"}.needed(),
           Key{"until", types::number, "End of the change.", "s"}.needed(),
           Key{"rise", numbers, "Total change.", "m"}.or_in("rad").needed()}});
@@ -356,28 +354,26 @@ Table drive_table()
     return Table{
         "[[drive]]",
         "A prescribed motion, given by exactly one law over time. Angles (rad) and displacements (m) are "
-        "joint coordinates, distances are in m. `rate` and `step` count from the value at the initial time; "
-        "the "
+        "joint coordinates, distances are in m. `rate` and `step` count from the initial value; the "
         "other laws give the coordinate itself. The types point and body prescribe a path: the displacement "
         "of a point from its initial position, in m and world axes; for a path give three numbers wherever "
         "one is listed below. The reaction of a drive acts on the second body, and its power enters the "
         "energy balance. Initial velocities must agree with the law, or `[start]` sets `initial = "
-        "\"project\"`; without any initial velocity in the scenario, livens sets it and warns.",
+        "\"project\"`; without any velocity in the scenario, livens sets it and warns.",
         {Key{"name", types::text,
              "Name of the drive; results list drives among the joints. Default: `drive of` and the joint or "
              "body."},
          Key{"type", types::choice, ""}.needed(),
          Key{"from", types::number,
-             "Time at which the drive engages. Position and rate must agree with the law then: a drive does "
-             "not continue from where the coordinate happens to be. Default: the initial time.",
+             "Time at which the drive engages; position and rate must agree with the law then. Default: the "
+             "initial time.",
              "s"},
          Key{"until", types::number,
              "Time at which the drive is released; velocities continue. Default: never.", "s"},
          Key{"value", numbers, "Constant value.", "m"}.or_in("rad").or_formulas(formulas_for_value),
          Key{"rate", numbers,
-             "Constant rate, such as `\"60 rpm\"`. The coordinate is its value at the initial time plus rate "
-             "times the time since the drive engages. For a varying rate, give the coordinate itself as "
-             "`expression`.",
+             "Constant rate, such as `\"60 rpm\"`, from the time at which the drive engages. For a varying "
+             "rate, give the coordinate itself as `expression`.",
              "m/s"}
              .or_in("rad/s")
              .or_formulas("for a varying rate give the angle or displacement itself as 'expression', as in "

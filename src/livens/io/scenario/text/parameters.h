@@ -62,7 +62,7 @@ public:
         State state = State::waits;
         bool is_set = false;               ///< by an override
         bool is_in_unit_of_file = false;   ///< it was set to a plain number, which has the file's unit
-        bool is_like_written = false;      ///< likewise, and near to the number that the file has before a unit
+        bool is_like_written = false;      ///< likewise, and near to the one in the file
         Override set_by = {};
         mutable bool is_used = false;
     };
