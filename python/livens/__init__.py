@@ -28,6 +28,7 @@ from ._generated import *   # noqa: F403  the shapes and methods that the schema
 from ._generated import Body, Drive, Joint, Load, MethodOptions, Point, Sensor
 from ._functions import BodyState
 from ._import import from_urdf
+from ._mujoco import from_mjcf
 from ._included import Added
 from ._load import load
 from ._model import Model
@@ -48,7 +49,7 @@ __all__ = [
     "Place", "Point", "PointSeries",
     "ReadingSeries", "RestBody", "RestJoint", "ResultFileError", "Section", "Sensor", "SensorSeries", "Series",
     "Shape", "SlowWarning", "Solution", "SolveError", "SolveWarning", "StateMatrices", "__version__", "compare",
-    "explain", "from_urdf", "load", "load_solution", "momenta", "positions", "solve", "solve_many", "state", "table", "visual",
+    "explain", "from_mjcf", "from_urdf", "load", "load_solution", "momenta", "positions", "solve", "solve_many", "state", "table", "visual",
 ]
 __all__ += _generated.__all__
 

@@ -168,7 +168,7 @@ class Model(Tree):
 
     @property
     def imported(self) -> list[Diagnostic]:
-        """What :func:`from_urdf` did not keep as it was, once for each kind; empty for other models.
+        """What :func:`from_urdf` or :func:`from_mjcf` did not keep as it was, once for each kind; empty for other models.
 
         Codes: ``import-lost`` is not kept, ``import-mended`` was changed so that it can be solved, ``import-merged`` is
         kept as part of something else. Not carried along in files.

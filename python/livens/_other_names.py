@@ -44,7 +44,8 @@ MODULE = {
     "read open loadtoml fromfile fromtoml loadscenario loadmodel": "lv.load('model.toml')",
     "loadresult loadresults readresult readresults loadrun openresult opensolution loadsol": "lv.load_solution('run.nc')",
     "loadurdf readurdf importurdf parseurdf urdf": "lv.from_urdf('robot.urdf')",
-    "frommjcf loadmjcf fromxml fromsdf fromadams": "livens reads its own TOML scenarios only; a page on "
+    "loadmjcf readmjcf importmjcf parsemjcf mjcf fromxml frommujoco mujoco": "lv.from_mjcf('robot.xml')",
+    "fromsdf fromadams loadsdf": "livens reads its own TOML scenarios only; a page on "
         "each program says how models are carried over (docs/coming_from)",
     "world ground": "the fixed frame is the word \"world\"",
     "system multibody multibodysystem mechanism plant mbs": "lv.Model(\"name\", gravity=(0, 0, -9.81))",
@@ -228,7 +229,9 @@ def refused_model(name: str) -> str:
     ending = name.rpartition(".")[2].lower() if "." in name else ""
     if ending == "urdf":
         return f"a robot is read by lv.from_urdf('{name}')"
-    if ending in ("xml", "mjcf", "sdf", "xacro", "adm", "cmd", "slx", "py", "json", "yaml", "yml"):
+    if ending in ("xml", "mjcf"):
+        return f"a model of MuJoCo is read by lv.from_mjcf('{name}')"
+    if ending in ("sdf", "xacro", "adm", "cmd", "slx", "py", "json", "yaml", "yml"):
         return "livens reads its own TOML scenarios; docs/coming_from says how models of other programs are carried over"
     if ending in ("nc", "cdf"):
         return f"a result is read by lv.load_solution('{name}')"

@@ -36,7 +36,7 @@ MODEL = {
     "rod": "m['rod']", "static_equilibrium": "m.find_equilibrium()", "save": "m.to_toml", "eigenfrequencies": "m.vibration_modes()",
     "bodys": "did you mean 'bodies'?", "add_revolut": "did you mean 'add_revolute'?"}
 MODULE = {
-    "Box": "'box'", "simulate": "lv.solve", "Simulation": "lv.solve", "Hinge": "m.add_revolute(..)", "load_urdf": "lv.from_urdf", "from_mjcf": "docs/coming_from",
+    "Box": "'box'", "simulate": "lv.solve", "Simulation": "lv.solve", "Hinge": "m.add_revolute(..)", "load_urdf": "lv.from_urdf", "from_sdf": "docs/coming_from", "load_mjcf": "lv.from_mjcf",
     "deg": "\"30 deg\"", "open": "lv.load", "load_result": "lv.load_solution", "slove": "did you mean 'solve'?"}
 SOLUTION = {
     "time": "'t'", "y": "sol['rod'].position", "rod": "sol['rod']", "animate": "sol.report", "show": "sol.report", "view": "sol.report",
@@ -80,7 +80,7 @@ def test_calls_of_other_programs(pendulum: lv.Model, sol: lv.Solution) -> None:
             (lambda: setattr(m, "accuracy", 1e-8), "[time]"),
             (lambda: sol["rod.position"], "sol['rod'].position"),
             (lambda: sol.save("x.mat"), "ncread"), (lambda: sol.save("x.csv"), "sol.export('x.csv')"),
-            (lambda: sol.export("x.mp4"), "webm (.webm)"), (lambda: lv.load("x.urdf"), "lv.from_urdf('x.urdf')"), (lambda: lv.load("x.xml"), "TOML"), (lambda: lv.load("run.nc"), "load_solution"),
+            (lambda: sol.export("x.mp4"), "webm (.webm)"), (lambda: lv.load("x.urdf"), "lv.from_urdf('x.urdf')"), (lambda: lv.load("x.xml"), "lv.from_mjcf('x.xml')"), (lambda: lv.load("x.sdf"), "TOML"), (lambda: lv.load("run.nc"), "load_solution"),
             (lambda: lv.box(1), "box(x, y, z)")):
         assert wanted in answer(call), wanted
     assert len(m.joints) == 1 and len(m.bodies) == 1 and len(m.drives) == 0

@@ -79,7 +79,8 @@ bool needs_file(std::string_view code)
 /// Of files of other programs.
 bool is_imported(std::string_view code)
 {
-    return code.starts_with("import-") || code.starts_with("urdf-") || code.starts_with("xml-");
+    return code.starts_with("import-") || code.starts_with("mjcf-") || code.starts_with("urdf-") ||
+           code.starts_with("xml-");
 }
 
 /// Codes without examples: no scenario leads to them, another code comes first, or it depends on the machine.

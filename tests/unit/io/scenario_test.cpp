@@ -547,8 +547,8 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                    "io-unreadable"});   // here, of meshes, of hostile files
     others.insert({"point-body", "point-unknown", "gravity-differs", "include-file", "include-ignored",
                    "include-limit", "include-path", "include-ring", "include-source"});   // their own tests
-    others.insert({"import-lost", "import-mended", "import-merged", "urdf-joint", "urdf-tag", "urdf-tree",
-                   "urdf-value", "xml-syntax"});   // of files of other programs
+    others.insert({"import-lost", "import-mended", "import-merged", "mjcf-read", "urdf-joint", "urdf-tag",
+                   "urdf-tree", "urdf-value", "xml-syntax"});   // of files of other programs
     others.insert(codes_of_others.begin(), codes_of_others.end());
     for (const Case& c : cases()) {
         EXPECT_NE(explain(c.code), "") << c.code;

@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Joints and what binds them: springs, limits, rotors, loops, joints that follow others."""
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._losses import Loss, lost
+from ._mujoco_fields import BALL, HINGE, SLIDE, TINY, WORLD, array, is_off, name_of
+from ._tree import Table, schema
+
+if TYPE_CHECKING:
+    from ._mujoco_parts import Parts
+
+_CONNECT, _WELD, _JOINT, _TENDON = range(4)
+_AT_A_LIMIT = 1e-6   # rad or m, of a start at a limit that was computed
+_LIMITS = lost("joint", "joint limits are not kept", "limits=\"stop\" keeps them as springs")
+_LIMITS_AT_START = lost("joint", "limits are not kept at or beyond which a joint begins", "state by at= where the joint begins")
+_LIMITS_ORDER = lost("joint", "limits are not kept whose lower is not below the upper")
+_SOFT_LIMITS = Loss("import-mended", "joint", "joints", "limits are springs here whose stiffness follows from the bodies (solref and solimp are not kept)")
+_BALL_LIMITS = lost("joint", "limits of ball joints are not kept")
+_BALL_ROTOR = lost("joint", "armature of ball and free joints is not kept")
+_FRICTION = lost("joint", "dry friction is not kept", "docs/howto/friction.md has it as an expression")
+_BENT = lost("joint", "springs and dampers that are not linear, or yield, are not kept")
+_NEGATIVE = lost("joint", "negative stiffness, damping and armature are not kept")
+_RIGID = Loss("import-mended", "equality", "equalities", "rigid here (solref and solimp are not kept)")
+_CURVED = lost("equality", "couplings are not kept that are not linear", many="equalities")
+_OTHER_EQUALITY = lost("equality", "equalities of flexible bodies, spatial tendons and distances are not kept", many="equalities")
+_SAME_BODY = Loss("import-lost", "equality", "equalities", "equalities within one body, or between bodies that do not move, are not needed")
+_OF_MANY = lost("equality", "couplings of more than two joints are not kept", many="equalities")
+_PINION = Loss("import-mended", "equality", "equalities", "couples two slides by two racks on a nearly massless pinion", names_all=True)
+_OFF_TENDON = lost("equality", "couplings of tendons keep the difference that they have at the start", many="equalities")
+
+
+def add_joint(p: Parts, j: int, name: str, first: str, second: str) -> None:
+    """Where the bodies stand, with the coordinate that it has there."""
+    m, d = p.m, p.d
+    kind = int(m.jnt_type[j])
+    content: dict[str, Any] = {"name": name, "type": {HINGE: "revolute", SLIDE: "prismatic", BALL: "spherical"}[kind],
+                               "between": (first, second), "at": tuple(float(x) for x in d.xanchor[j])}
+    if kind != BALL:
+        content["axis"] = tuple(float(x) for x in d.xaxis[j])
+        content["coordinate"] = float(d.qpos[m.jnt_qposadr[j]])
+        p.coordinates[j] = f"{name}.{'angle' if kind == HINGE else 'displacement'}"
+    p.joint_names[j] = name
+    table = p.add("joint", content)
+    _add_along(p, j, table)
+
+
+def rotor_of(m: Any, j: int) -> float:
+    """Armature along the coordinate, with that of its actuators behind their gears."""
+    own = float(m.dof_armature[m.jnt_dofadr[j]])
+    inertia, kind = array(m, "actuator_armature"), array(m, "actuator_trntype")
+    return own + sum(float(inertia[i] * m.actuator_gear[i][0] ** 2) for i in range(len(kind)) if kind[i] in (0, 1) and m.actuator_trnid[i][0] == j)
+
+
+def damping_of(m: Any, j: int) -> float:
+    """Likewise."""
+    own = float(np.ravel(m.dof_damping[m.jnt_dofadr[j]])[0])
+    damping, kind = array(m, "actuator_damping"), array(m, "actuator_trntype")
+    return own + sum(float(damping[i] * m.actuator_gear[i][0] ** 2) for i in range(len(kind)) if kind[i] in (0, 1) and m.actuator_trnid[i][0] == j)
+
+
+def _add_along(p: Parts, j: int, table: Table) -> None:
+    """Stiffness, damping, rotor, limits."""
+    m, dof, is_ball = p.m, p.m.jnt_dofadr[j], p.m.jnt_type[j] == BALL
+    stiffness, damping, rotor = float(m.jnt_stiffness[j]), damping_of(m, j), rotor_of(m, j)
+    name = table["name"]
+    bent = [array(m, "jnt_stiffnesspoly")[j], array(m, "dof_dampingpoly")[dof], array(m, "jnt_springyield")[j]]
+    bent += [array(m, "actuator_dampingpoly")[i] for i in range(len(array(m, "actuator_trntype"))) if m.actuator_trnid[i][0] == j]
+    if any(np.any(x) for x in bent):
+        p.losses.add(_BENT, name)
+    if m.dof_frictionloss[dof] > 0 and not is_off(m, "FRICTIONLOSS"):
+        p.losses.add(_FRICTION, name)
+    if min(stiffness, damping, rotor) < 0:
+        p.losses.add(_NEGATIVE, name)
+    if damping > 0 and not is_off(m, "DAMPER"):
+        table["damping"] = damping
+    if stiffness > 0 and not is_ball and not is_off(m, "SPRING"):
+        table["stiffness"], table["rest"] = stiffness, float(m.qpos_spring[m.jnt_qposadr[j]])
+    if rotor > 0:
+        _add_rotor(p, j, table, rotor)
+    if m.jnt_limited[j] and not is_off(m, "LIMIT"):
+        _add_limits(p, j, table)
+
+
+def _add_limits(p: Parts, j: int, table: Table) -> None:
+    name = table["name"]
+    if p.m.jnt_type[j] == BALL:
+        return p.losses.add(_BALL_LIMITS, name)
+    if not p.stops:
+        return p.losses.add(_LIMITS, name)
+    low, high = (float(x) for x in p.m.jnt_range[j])
+    if not low < high:
+        return p.losses.add(_LIMITS_ORDER, name)
+    q = table["coordinate"]
+    kept = (low if q > low + _AT_A_LIMIT else -math.inf, high if q < high - _AT_A_LIMIT else math.inf)
+    if not all(math.isfinite(x) for x in kept):
+        p.losses.add(_LIMITS_AT_START, name)
+    if any(math.isfinite(x) for x in kept):
+        p.losses.add(_SOFT_LIMITS, name)
+        table["limits"] = kept
+
+
+def _add_rotor(p: Parts, j: int, table: Table, inertia: float) -> None:
+    """The kinetic energy inertia/2 * rate^2. Where joints have no key for it: of something in the world, off the way,
+    which a rack binds to the coordinate (docs/howto/motors.md)."""
+    m, name = p.m, table["name"]
+    if m.jnt_type[j] == BALL:
+        return p.losses.add(_BALL_ROTOR, name)
+    key = schema().keys(schema().children["joint"], table["type"]).get("rotor_inertia")
+    if key is not None and key["words"]:
+        table["rotor_inertia"] = inertia
+        return None
+    rate = float(p.d.qvel[m.jnt_dofadr[j]])
+    rotor, line = p.names.of(f"rotor of {name}", "body"), p.names.of(f"line of {name}", "joint")
+    if m.jnt_type[j] == HINGE:
+        weight = np.array(p.root["gravity"])
+        across = np.cross(weight, np.eye(3)[np.argmin(np.abs(weight))]) if np.any(weight) else np.array([1.0, 0, 0])
+        across = across / np.linalg.norm(across)
+        body: dict[str, Any] = {"name": rotor, "shape": Table({"point": True}, p.place), "mass": inertia}
+        if rate:
+            body["velocity"] = tuple(float(x) for x in rate * across)
+        p.add("joint", {"name": line, "type": "point_on_line", "between": (WORLD, rotor), "at": (0.0, 0.0, 0.0),
+                        "axis": tuple(float(x) for x in across)})
+    else:
+        body = {"name": rotor, "mass": inertia, "inertia": (inertia,) * 3}
+        if rate:
+            body["angular_velocity"] = (0.0, 0.0, rate)
+        p.add("joint", {"name": line, "type": "revolute", "between": (WORLD, rotor), "at": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)})
+    p.add("body", body)
+    p.add("joint", {"name": p.names.of(f"rack of {name}", "joint"), "type": "rack_and_pinion",
+                    "joints": (name, line) if m.jnt_type[j] == HINGE else (line, name), "radius": 1.0})
+    return None
+
+
+# What closes loops, and who follows whom.
+
+def add_equalities(p: Parts) -> None:
+    m = p.m
+    if is_off(m, "EQUALITY"):
+        return
+    for e in range(m.neq):
+        if not m.eq_active0[e]:
+            continue
+        kind = int(m.eq_type[e])
+        if kind in (_CONNECT, _WELD):
+            _add_loop(p, e, kind)
+        elif kind == _JOINT:
+            _add_coupling(p, e, {int(m.eq_obj1id[e]): 1.0}, {int(m.eq_obj2id[e]): 1.0} if m.eq_obj2id[e] >= 0 else {})
+        elif kind == _TENDON and (terms := [fixed_terms(m, int(t)) if t >= 0 else {} for t in (m.eq_obj1id[e], m.eq_obj2id[e])])[0] \
+                and (terms[1] or m.eq_obj2id[e] < 0):
+            _add_coupling(p, e, *terms)
+        else:
+            p.losses.add(_OTHER_EQUALITY, name_of(m, "eq", e))
+
+
+def fixed_terms(m: Any, t: int) -> dict[int, float]:
+    """Of a tendon that is a sum of coordinates: its joints and their factors. Empty for others."""
+    terms: dict[int, float] = {}
+    for w in range(m.tendon_adr[t], m.tendon_adr[t] + m.tendon_num[t]):
+        if m.wrap_type[w] != 1:
+            return {}
+        joint = int(m.wrap_objid[w])
+        terms[joint] = terms.get(joint, 0.0) + float(m.wrap_prm[w])
+    return terms
+
+
+def _ends(p: Parts, e: int) -> list[tuple[int, Any, Any]]:
+    """Of both sides: the body, a point and axes of the world."""
+    m, d = p.m, p.d
+    of_sites = int(m.eq_objtype[e]) == 6
+    ends = []
+    for o, at in ((int(m.eq_obj1id[e]), 0), (int(m.eq_obj2id[e]), 1)):
+        if of_sites:
+            ends.append((int(p.owner[m.site_bodyid[o]]), np.array(d.site_xpos[o]), d.site_xmat[o].reshape(3, 3)))
+            continue
+        is_weld = m.eq_type[e] == _WELD   # whose numbers stand the other way round
+        first = 3 * (1 - at if is_weld else at)
+        R = d.xmat[o].reshape(3, 3)
+        axes = R
+        if is_weld and at == 0:
+            axes = R @ matrix_of(m.eq_data[e][6:10])
+        ends.append((int(p.owner[o]), d.xpos[o] + R @ m.eq_data[e][first:first + 3], axes))
+    return ends
+
+
+def matrix_of(quaternion: Any) -> Any:
+    w, x, y, z = quaternion / (np.linalg.norm(quaternion) or 1)
+    return np.array([[w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z]])
+
+
+def _add_loop(p: Parts, e: int, kind: int) -> None:
+    ends = _ends(p, e)
+    if ends[0][0] == ends[1][0]:
+        return p.losses.add(_SAME_BODY, name_of(p.m, "eq", e))
+    content: dict[str, Any] = {"name": p.named("eq", e, "joint"), "type": "spherical" if kind == _CONNECT else "weld",
+                               "between": tuple(p.body_names[body] for body, _, _ in ends)}
+    points = tuple(p.in_body(body, point) for body, point, _ in ends)
+    if kind == _CONNECT:
+        content["points"] = points
+    else:
+        content["frames"] = [Table({"point": point, "directors": tuple(tuple(float(x) for x in row) for row in p.axes_in(body, axes).T)}, p.place)
+                             for point, (body, _, axes) in zip(points, ends)]
+    p.add("joint", content)
+    p.root["start"] = Table({"initial": "project"}, p.place)   # the pose need not close it
+    p.losses.add(_RIGID, content["name"])
+    return None
+
+
+def _add_coupling(p: Parts, e: int, follows: Mapping[int, float], leads: Mapping[int, float]) -> None:
+    """follows - its own at qpos0 = a0 + a1 (leads - its own at qpos0), each a sum of coordinates."""
+    m = p.m
+    poly = [float(x) for x in m.eq_data[e][:5]]
+    name = name_of(m, "eq", e)
+    if any(poly[2:]):
+        return p.losses.add(_CURVED, name)
+    terms = dict(follows)
+    for j, factor in leads.items():
+        terms[j] = terms.get(j, 0.0) - poly[1] * factor
+    terms = {j: factor for j, factor in terms.items() if factor}
+
+    def along(of: Mapping[int, float]) -> float:
+        return sum(c * float(p.d.qpos[m.jnt_qposadr[j]] - m.qpos0[m.jnt_qposadr[j]]) for j, c in of.items())
+    if abs(along(follows) - poly[0] - poly[1] * along(leads)) > 1e-9:
+        p.losses.add(_OFF_TENDON, name)
+    if not terms or any(j not in p.coordinates for j in terms):
+        return p.losses.add(_SAME_BODY, name)
+    name = p.named("eq", e, "coupling")
+    p.losses.add(_RIGID, name)
+    return couple(p, name, terms)
+
+
+def couple(p: Parts, name: str, terms: Mapping[int, float]) -> None:
+    """The sum of factors times coordinates stays what it is at the start."""
+    if any(kind["word"] == "coupling" for kind in schema().children["joint"]["kinds"]):
+        p.add("joint", {"name": name, "type": "coupling", "terms": Table({p.coordinates[j]: c for j, c in terms.items()}, p.place)})
+        return None
+    joints = list(terms)
+    of = {j: p.coordinates[j].rpartition(".")[0] for j in joints}
+    if len(joints) == 1:
+        p.add("drive", {"name": name, "type": "joint", "joint": of[joints[0]], "value": float(p.d.qpos[p.m.jnt_qposadr[joints[0]]])})
+        return None
+    if len(joints) > 2:
+        return p.losses.add(_OF_MANY, name)
+    turning = [j for j in joints if p.m.jnt_type[j] == HINGE]
+    follows, leads = joints
+    ratio = -terms[leads] / terms[follows]
+    if len(turning) == 2:
+        p.add("joint", {"name": name, "type": "gear", "joints": (of[leads], of[follows]), "ratio": ratio})
+    elif turning:
+        slide = follows if turning[0] == leads else leads
+        p.add("joint", {"name": name, "type": "rack_and_pinion", "joints": (of[turning[0]], of[slide]),
+                        "radius": -terms[turning[0]] / terms[slide]})
+    else:
+        _add_pinion(p, name, leads, of[leads], of[follows], ratio)
+    return None
+
+
+def _add_pinion(p: Parts, name: str, leader: int, leads: str, follows: str, ratio: float) -> None:
+    """Of radius 1 m in the world, which one slide turns and the other is moved by."""
+    mass = TINY * p.smallest
+    pinion, shaft = p.names.of(f"pinion of {name}", "body"), p.names.of(f"shaft of {name}", "joint")
+    body: dict[str, Any] = {"name": pinion, "mass": mass, "inertia": (mass,) * 3}
+    if rate := float(p.d.qvel[p.m.jnt_dofadr[leader]]):
+        body["angular_velocity"] = (0.0, 0.0, rate)
+    p.add("body", body)
+    p.add("joint", {"name": shaft, "type": "revolute", "between": (WORLD, pinion), "at": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)})
+    p.add("joint", {"name": name, "type": "rack_and_pinion", "joints": (shaft, leads), "radius": 1.0})
+    p.add("joint", {"name": p.names.of(f"{name} 2", "joint"), "type": "rack_and_pinion", "joints": (shaft, follows), "radius": ratio})
+    p.losses.add(_PINION, name)
