@@ -31,7 +31,7 @@ def from_urdf(file: str | os.PathLike[str], *, at: Mapping[str, float | str] | N
         rates: Likewise, rad/s or m/s.
         base: Whether the first link stands still in the world.
         packages: Where ``package://NAME/..`` is: ``{"ur_description": "/opt/ur_description"}``.
-        meshes: Whether visuals are drawn: boxes, cylinders, spheres, and meshes (STL, OBJ, PLY, MSH) that lie at or
+        meshes: Whether visuals are drawn: boxes, cylinders, spheres, and meshes (STL, OBJ, PLY, DAE, MSH) that lie at or
             below the file's folder or in a stated package.
         limits: What becomes of limits of joints: ``"stop"`` makes them ``limits`` of the joints, springs that act beyond
             them; limits at or beyond which a joint begins are listed instead.

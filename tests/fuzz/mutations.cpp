@@ -2,16 +2,21 @@
 // Random damage to scenarios and URDFs, the same in every run: each text ends in findings or a scenario.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <random>
 #include <sstream>
 #include <vector>
 
 #include "fuzz/scenario.h"
 #include "fuzz/urdf.h"
+#include "livens/base/error.h"
+#include "livens/io/scenario/bodies/collada.h"
 
 namespace livens {
 
@@ -41,7 +46,7 @@ std::vector<std::string> damaging(const std::string& words)
     return odd;
 }
 
-/// What a scenario may be damaged with, and what a URDF.
+/// What a scenario may be damaged with, what a URDF, and what a Collada file.
 const std::vector<std::string>& words_of_scenarios()
 {
     static const std::vector<std::string> all = damaging(
@@ -64,6 +69,19 @@ const std::vector<std::string>& words_of_urdfs()
                  "type=\"prismatic\" "
                  "<mimic joint=\"lift\"/> <mass value=\"0\"/> xyz=\"0 0 0\" ${a} xacro:x \xff \x01 "
                  "\xe2\x80\xae . = < > / \" ' 1,5");
+    return all;
+}
+
+const std::vector<std::string>& words_of_colladas()
+{
+    static const std::vector<std::string> all =
+        damaging("nan -inf 1e308 1e-320 1e400 0 -1 4 2147483647 2147483648 <node> </node> <p> </p> <vcount> "
+                 "<!DOCTYPE <!-- --> "
+                 "&amp; &lol; &#0; url=\"#foot\" url=\"#leg\" url=\"#scene\" source=\"#corners\" "
+                 "offset=\"2\" offset=\"-1\" "
+                 "offset=\"999\" stride=\"0\" stride=\"5\" meter=\"-1\" POSITION VERTEX triangles trifans "
+                 "polygons tristrips \xff "
+                 "\x01 . = < > / \" ' 1,5");
     return all;
 }
 
@@ -171,6 +189,30 @@ TEST(Mutations, EachEndsInFindingsOrAScenario)
     ASSERT_GT(texts.size(), 10u);
     damage(texts, words_of_scenarios(), 20'000, 20, test::is_answered,
            [](const std::string& text) { return parse_scenario(text, "").scenario.has_value(); });
+}
+
+TEST(Mutations, EachColladaEndsInFacesOrAnError)
+{
+    const std::vector<std::string> texts = files_of({"/tests/fuzz/corpus_collada"}, ".dae");
+    ASSERT_EQ(texts.size(), 1u);
+    const auto read = [](const std::string& text) -> std::optional<Mesh> {
+        try {
+            return io_internal::read_collada(text, "a.dae");
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.complaint().code, "mesh-format") << text;
+            return {};
+        }
+    };
+    const auto is_sound = [&](const std::string& text) {
+        const std::optional<Mesh> mesh = read(text);
+        if (!mesh) return true;
+        const auto n = static_cast<std::int32_t>(mesh->points.size());
+        return std::ranges::all_of(mesh->blocks.front().nodes,
+                                   [&](std::int32_t node) { return node >= 0 && node < n; }) &&
+               std::ranges::all_of(mesh->points, [](const Vector3& x) { return std::isfinite(norm(x)); });
+    };
+    damage(texts, words_of_colladas(), 20'000, 20, is_sound,
+           [&](const std::string& text) { return read(text).has_value(); });
 }
 
 TEST(Mutations, EachUrdfEndsInFindingsOrAScenario)

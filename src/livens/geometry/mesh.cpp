@@ -141,9 +141,8 @@ Mesh read_mesh(std::string_view bytes, const std::string& name)
     return mesh;
 }
 
-Mesh read_mesh_file(const std::filesystem::path& file, std::string name)
+MeshBytes read_mesh_bytes(const std::filesystem::path& file, const std::string& name)
 {
-    if (name.empty()) name = file.string();
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
     if (!std::filesystem::exists(status)) refuse_file(name, "does not exist");
@@ -153,15 +152,21 @@ Mesh read_mesh_file(const std::filesystem::path& file, std::string name)
     if (size > max_mesh_bytes)
         refuse_file(name,
                     "has " + std::to_string(size) + " bytes, more than " + std::to_string(max_mesh_bytes));
-    const auto bytes = std::make_unique_for_overwrite<char[]>(size);
-    prefer_large_pages(bytes.get(), size);
+    MeshBytes bytes{std::make_unique_for_overwrite<char[]>(size), size};
+    prefer_large_pages(bytes.begin.get(), size);
     errno = 0;
     std::ifstream stream(file, std::ios::binary);
     // Without memory for the buffer of a stream opening fails as well; that is no fault of the file.
     if (!stream.is_open() && errno == ENOMEM) throw std::bad_alloc();   // of the stream's own
-    stream.read(bytes.get(), static_cast<std::streamsize>(size));
+    stream.read(bytes.begin.get(), static_cast<std::streamsize>(size));
     if (!stream) refuse_file(name, "cannot be read");
-    return read_mesh({bytes.get(), size}, name);
+    return bytes;
+}
+
+Mesh read_mesh_file(const std::filesystem::path& file, std::string name)
+{
+    if (name.empty()) name = file.string();
+    return read_mesh(read_mesh_bytes(file, name).text(), name);
 }
 
 }   // namespace livens

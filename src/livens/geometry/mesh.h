@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,8 +66,17 @@ inline constexpr std::uintmax_t max_mesh_bytes = std::uintmax_t{1} << 30;
 ///
 /// throws   InputError (`mesh-format`) with line or byte
 Mesh read_mesh(std::string_view bytes, const std::string& name);
-/// Likewise; also throws `mesh-file` for what cannot be read or is larger than max_mesh_bytes. `name`: what
-/// messages call the file, with the same ending; empty: its path.
+/// A file, which is as long as it may be.
+struct MeshBytes {
+    std::unique_ptr<char[]> begin;
+    std::size_t size = 0;
+
+    std::string_view text() const { return {begin.get(), size}; }
+};
+/// `name`: what messages call the file. Throws InputError `mesh-file` for what cannot be read or is larger
+/// than max_mesh_bytes.
+MeshBytes read_mesh_bytes(const std::filesystem::path& file, const std::string& name);
+/// Both. `name`: with the same ending; empty: its path.
 Mesh read_mesh_file(const std::filesystem::path& file, std::string name = {});
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

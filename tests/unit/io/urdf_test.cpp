@@ -427,7 +427,7 @@ TEST_F(UrdfMeshes, AreDrawnFromTheFolderAndPackagesThatWereNamedAndFromNowhereEl
 TEST_F(UrdfMeshes, ThatCannotBeDrawnAreToldAndStopNothing)
 {
     EXPECT_EQ(n_told(with("none.obj"), "import-lost", "do not exist"), 1);
-    EXPECT_EQ(n_told(with("one.dae"), "import-lost", ".dae meshes"), 1);
+    EXPECT_EQ(n_told(with("one.glb"), "import-lost", ".glb meshes"), 1);
     const UrdfResult broken = with("broken.stl");
     EXPECT_TRUE(broken.scenario) << told(broken);
     EXPECT_EQ(n_told(broken, "import-lost", "not drawn: "), 1) << told(broken);

@@ -67,7 +67,7 @@ inline constexpr LossKind mesh_package{"import-lost", "mesh", "meshes",
                                        "meshes of package '@' are not drawn (its folder is not known)",
                                        "give the folder of package '@'"};
 inline constexpr LossKind mesh_format{"import-lost", "mesh", "meshes", "@ meshes are not drawn",
-                                      "STL, OBJ, PLY and MSH are drawn: convert them"};
+                                      "STL, OBJ, PLY, DAE and MSH are drawn: convert them"};
 inline constexpr LossKind mesh_outside{
     "import-lost", "mesh", "meshes", "meshes outside the given folders are not drawn",
     "give their folder as a package; a scenario file must lie in a folder above its meshes"};

@@ -71,7 +71,7 @@ void UrdfElements::check_word(const XmlElement& e, const XmlElement& child, cons
 
 void UrdfElements::check(const XmlElement& e, const ElementContent& content, const std::string& owner)
 {
-    if (e.has_text)
+    if (!e.text.empty())
         findings_.error(e.place, "urdf-tag", "words stand between the tags of <" + e.name + ">",
                         {"URDF says all in tags and attributes", ""});
     for (const XmlElement& child : e.children) check_word(e, child, content, owner);

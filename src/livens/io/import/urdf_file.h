@@ -10,7 +10,7 @@
 
 #include "livens/base/linear.h"
 #include "livens/io/import/losses.h"
-#include "livens/io/import/xml.h"
+#include "livens/io/scenario/text/xml.h"
 
 namespace livens::inline io_internal {
 

@@ -95,7 +95,7 @@ bool UrdfMeshes::locate(const UrdfVisual& visual, const std::string& link, fs::p
     if (!expand(visual, link, named, losses)) return false;
     if (!(scale[0] > 0 && scale[0] == scale[1] && scale[0] == scale[2])) return lose(losses::mesh_scale);
     const std::string ending = ending_of(named);
-    if (ending != ".stl" && ending != ".obj" && ending != ".ply" && ending != ".msh")
+    if (ending != ".stl" && ending != ".obj" && ending != ".ply" && ending != ".msh" && ending != ".dae")
         return lose(losses::mesh_format, ending.empty() ? "without an ending" : ending.substr(0, 10));
     found = plain_path(named);
     if (!is_named(found)) return lose(losses::mesh_outside);

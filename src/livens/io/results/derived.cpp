@@ -40,7 +40,7 @@ constexpr BalanceVariable balance_variables[] = {
     {"kinetic_energy", "J", "kinetic energy", &Balance::kinetic},
     {"potential_energy", "J", "potential energy of gravity and of loads that have one", &Balance::potential},
     {"energy", "J", "kinetic and potential energy", &Balance::energy},
-    {"work", "J", "work of the loads without potential since the start", &Balance::work},
+    {"work", "J", "work of the loads without potential and of the drives since the start", &Balance::work},
     {"energy_error", "J", "|energy - energy at the start - work|", &Balance::energy_drift},
     {"total_linear_momentum", "kg m s-1", "linear momentum of all bodies", &Balance::linear_momentum},
     {"total_angular_momentum", "kg m2 s-1", "angular momentum of all bodies about the origin",

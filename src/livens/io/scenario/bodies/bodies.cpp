@@ -120,8 +120,9 @@ Table body_table()
 {
     Table end{"[body.end]",
               "Placement at the final time, below its `[[body]]`. Every body needs one if `given` of `[end]` "
-              "is not "
-              "`nothing`. Prescribed momenta are computed from these positions and velocities.",
+              "is not `nothing`. Keys left out are zero, and an orientation that is left out is that of the "
+              "world axes, not that of `[[body]]`. Prescribed momenta are computed from these positions and "
+              "velocities.",
               pose_keys("[0, 0, 0]")};
     Table body{
         "[[body]]",

@@ -15,6 +15,7 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/geometry/soundness.h"
+#include "livens/io/scenario/bodies/collada.h"
 #include "livens/io/scenario/bodies/density_fields.h"
 #include "livens/io/scenario/text/findings.h"
 
@@ -311,6 +312,7 @@ Mesh MeshStore::open(const std::string& path)
 {
     const std::filesystem::path file = find_file(source_, path, "mesh");
     files_.push_back(file);
+    if (is_collada(path)) return read_collada(read_mesh_bytes(file, path).text(), path);
     return read_mesh_file(file, path);
 }
 

@@ -156,7 +156,8 @@ Table point_table()
         "A named point of a body or of the world. The name stands wherever a joint, drive, load or sensor "
         "takes the coordinates of a point: `at = \"tip\"`, `point = \"tip\"`, `points = [\"hook\", "
         "\"tip\"]`. It implies the body, so that `body` and `between` are not needed. The motion of a point "
-        "is recorded without a sensor, and expressions use it: `tip.x`.",
+        "is known without a sensor, to `livens sample --sensor`, `livens peaks` and Python, and expressions "
+        "use it: `tip.x`.",
         {Key{"name", types::text, "Name of the point; no body, joint, drive or sensor may have it."}.needed(),
          Key{"body", types::text, "Name of the body, or `\"world\"`."}.needed(),
          Key{"position", types::vector3, "Position in body coordinates.", "m", "[0, 0, 0]"}}};

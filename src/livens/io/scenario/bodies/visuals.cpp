@@ -61,12 +61,14 @@ Key visual_key(const char* doc)
                  "in the world.",
                  {}};
     for (const Primitive& p : primitives()) visual.keys.push_back(p.key);
-    visual.keys.push_back({"mesh", types::text,
-                           "Mesh file: STL, OBJ, PLY or Gmsh MSH. The path is relative to the scenario's "
-                           "folder and must stay inside it. The surface need not be closed."});
+    visual.keys.push_back(
+        {"mesh", types::text,
+         "Mesh file: STL, OBJ, PLY, DAE (Collada) or Gmsh MSH. The path is relative to the scenario's "
+         "folder and must stay inside it. The surface need not be closed."});
     visual.keys.push_back(
         {"unit", types::text,
-         "Length unit of the numbers in the mesh file, such as `\"mm\"`. Needed for a mesh."});
+         "Length unit of the numbers in the mesh file, such as `\"mm\"`. Needed for a mesh; `\"m\"` for DAE, "
+         "whose numbers are converted by the unit that the file states."});
     visual.keys.push_back(
         Key{"scale", types::number, "Scale factor for the mesh.", "", "1"}.within(positive));
     visual.keys.push_back({"position", types::vector3,

@@ -72,7 +72,8 @@ std::vector<Key> mixed_keys()
         basis(),
         choice<Mixed::Start>(
             "momentum",
-            "How the momenta at both ends of time enter the equations. natural: in the boundary terms of "
+            "How the momenta at the initial and final time enter the equations. natural: in the boundary "
+            "terms of "
             "Hamilton's law, so that momentum and angular momentum balance to rounding; strong: as "
             "prescribed values of the momentum field, which loses angular momentum."),
         choice<Mixed::Multipliers>(
@@ -179,9 +180,9 @@ const std::vector<OptionKey>& option_keys()
 {
     static const std::vector<OptionKey> all{
         {Key{"tolerance", types::number,
-             "When Newton's iteration stops: when what it still has to correct is estimated to be less than "
-             "this part of how far the bodies move within the element (mixed: of the model length). Larger "
-             "values than 1e-10 count as 1e-10 in lobatto and radau, because the error estimate needs it "
+             "Newton's iteration stops when the estimated remaining correction is below this fraction of the "
+             "displacement of the bodies within the element (mixed: of the model length). Larger values than "
+             "1e-10 count as 1e-10 in lobatto and radau, because the error estimate needs it "
              "(unless `estimate` is \"none\" and `growth` false). An `accuracy` of 1e-8 or less lowers it to "
              "1e-15; below 1e-9 only if the first try was not accurate enough.",
              "", "1e-14"}
@@ -198,9 +199,9 @@ const std::vector<OptionKey>& option_keys()
              "That method has degree + 1; lobatto from degree 4 on takes degree + 2 under loads and drives, "
              "or where elements barely resolve the motion; mixed is compared with lobatto of degree + 2, "
              "midpoint with lobatto and endpoint with radau of degree 3. local: the error that each element "
-             "adds is estimated and carried on to later times by as much as neighbouring motions separate. "
+             "adds is estimated and propagated to later times with the divergence of neighbouring motions. "
              "It is for lobatto and radau with `elements`, from a given initial state, under no loads but "
-             "those that depend on time alone; it is often ten times too large and tells nothing of "
+             "those that depend on time alone; it is often ten times too large and gives no estimate for "
              "velocities and reactions. none: no estimate."),
          &SolveOptions::estimate},
         {Key{"growth", types::truth,

@@ -27,8 +27,8 @@ Table time_table()
              .within({1, max_elements}),
          Key{"output", types::number_or_list,
              "Interval between output times (start and end are included), or an ascending list of output "
-             "times. Each output time is an element end, where results are most accurate. Default: all "
-             "element ends.",
+             "times. Output times are element ends, where results are most accurate, unless joints are "
+             "singular there. Default: all element ends.",
              "s"},
          choice("breaks", {"from_loads", "ignore"},
                 "from_loads: elements end at jumps and kinks of loads; ignore: they do not."),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The only source that includes tinyxml2, which expands the five entities of XML and numbers of characters,
 // opens nothing, and stops at elements nested deeper than 100. What it is too lenient for is checked here.
-#include "livens/io/import/xml.h"
+#include "livens/io/scenario/text/xml.h"
 
 #include <algorithm>
 
@@ -27,10 +27,9 @@ bool refuse_document_types(std::string_view text, Findings& findings)
     for (std::size_t at = text.find("<!"); at != std::string_view::npos; at = text.find("<!", at)) {
         const bool is_comment = text.substr(at).starts_with("<!--");
         if (!is_comment && !text.substr(at).starts_with("<![CDATA["))
-            return findings.error(
-                {line_at(text, at), 1, 1}, "xml-syntax",
-                "document types and entities (<!DOCTYPE ..>) are not read",
-                {"they may name other files and grow without bound", "leave them out: no robot needs them"});
+            return findings.error({line_at(text, at), 1, 1}, "xml-syntax",
+                                  "document types and entities (<!DOCTYPE ..>) are not read",
+                                  {"they may name other files and grow without bound", "leave them out"});
         at = text.find(is_comment ? "-->" : "]]>", at);
         if (at == std::string_view::npos) break;   // the parser says so
     }
@@ -135,7 +134,7 @@ bool convert(const tinyxml2::XMLElement& from, const Lines& lines, XmlElement& t
         to.attributes.push_back({a->Name(), a->Value()});
     if (!refuse_twice(to, findings)) return false;
     for (const tinyxml2::XMLNode* node = from.FirstChild(); node != nullptr; node = node->NextSibling()) {
-        to.has_text = to.has_text || node->ToText() != nullptr;
+        if (const tinyxml2::XMLText* text = node->ToText()) to.text += text->Value();
         if (const tinyxml2::XMLElement* child = node->ToElement())
             if (!convert(*child, lines, to.children.emplace_back(), findings)) return false;
     }

@@ -20,7 +20,7 @@ struct XmlElement {
     SourceLocation place;   ///< of its first tag
     std::vector<XmlAttribute> attributes;
     std::vector<XmlElement> children;
-    bool has_text = false;   ///< words between its children
+    std::string text;   ///< between its children
 
     const std::string* find(std::string_view attribute) const;   ///< null if there is none
 };
