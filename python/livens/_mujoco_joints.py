@@ -131,7 +131,7 @@ def _add_rotor(p: Parts, j: int, table: Table, inertia: float) -> None:
         if rate:
             body["angular_velocity"] = (0.0, 0.0, rate)
         p.add("joint", {"name": line, "type": "revolute", "between": (WORLD, rotor), "at": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)})
-    p.add("body", body)
+    p.add("body", {**body, "visual": p.dot()})
     p.add("joint", {"name": p.names.of(f"rack of {name}", "joint"), "type": "rack_and_pinion",
                     "joints": (name, line) if m.jnt_type[j] == HINGE else (line, name), "radius": 1.0})
     return None
@@ -266,7 +266,7 @@ def _add_pinion(p: Parts, name: str, leader: int, leads: str, follows: str, rati
     """Of radius 1 m in the world, which one slide turns and the other is moved by."""
     mass = TINY * p.smallest
     pinion, shaft = p.names.of(f"pinion of {name}", "body"), p.names.of(f"shaft of {name}", "joint")
-    body: dict[str, Any] = {"name": pinion, "mass": mass, "inertia": (mass,) * 3}
+    body: dict[str, Any] = {"name": pinion, "mass": mass, "inertia": (mass,) * 3, "visual": p.dot()}
     if rate := float(p.d.qvel[p.m.jnt_dofadr[leader]]):
         body["angular_velocity"] = (0.0, 0.0, rate)
     p.add("body", body)

@@ -258,6 +258,17 @@ class Tells(unittest.TestCase):
         for given in (mujoco.MjModel.from_xml_string(text), mujoco.MjSpec.from_string(text)):
             self.assertEqual(lv.from_mjcf(given), lv.from_mjcf(text))
 
+    def test_a_compiled_model_that_was_spoilt_is_refused(self):
+        for field, value, code in (("body_mass", np.nan, "not-finite"), ("body_mass", -1, "mass-not-positive"),
+                                   ("dof_damping", np.inf, "not-finite"), ("qpos0", np.nan, "not-finite")):
+            m = mujoco.MjModel.from_xml_string(model(PAIR))
+            getattr(m, field)[-1] = value
+            self.refused(code, lambda m=m: lv.from_mjcf(m))
+        m.opt.gravity[:] = np.nan
+        m.qpos0[:] = 0
+        self.refused("not-finite", lambda: lv.from_mjcf(m), "gravity")
+        self.refused("expression-syntax", lambda: self.made(PAIR, "<actuator><motor name='m' joint='p'/></actuator>", control={"m": "1 +"}))
+
     def test_the_page_does_what_it_shows(self):
         root = menagerie.ROOT
         sys.path.insert(0, str(root / "tests/docs"))
