@@ -26,13 +26,19 @@ CASES = {   # file, spread of angles (rad; slides a tenth), of rates, bound
 
 def compiled(case, solref=0.001):
     m = mujoco.MjModel.from_xml_path(str(ASSETS / CASES[case][0]))
+    switched_off(m, solref)
+    return m
+
+
+def switched_off(m, solref, actuation=False):
+    """What livens does not have or has otherwise; equalities are nearly rigid."""
     off = mujoco.mjtDisableBit
-    m.opt.disableflags |= off.mjDSBL_CONTACT | off.mjDSBL_LIMIT | off.mjDSBL_FRICTIONLOSS | off.mjDSBL_ACTUATION
+    m.opt.disableflags |= off.mjDSBL_CONTACT | off.mjDSBL_LIMIT | off.mjDSBL_FRICTIONLOSS
+    if not actuation:
+        m.opt.disableflags |= off.mjDSBL_ACTUATION
     m.opt.integrator, m.opt.timestep, m.opt.tolerance = mujoco.mjtIntegrator.mjINT_RK4, STEP, 1e-14
     m.opt.density = m.opt.viscosity = 0
-    m.tendon_stiffness[:] = m.tendon_damping[:] = 0
-    m.eq_solref[:], m.eq_solimp[:] = (solref, 1), (0.9999, 0.9999, 0.001, 0.5, 2)   # nearly rigid
-    return m
+    m.eq_solref[:], m.eq_solimp[:] = (solref, 1), (0.9999, 0.9999, 0.001, 0.5, 2)
 
 
 def start(m, spread, rate):
