@@ -61,6 +61,7 @@ CASES = {   # the model, what moves at first by joint, and the bound
                       "<actuator><position name='m' tendon='t' kp='3'/></actuator>"], {"p": 0.4, "q": 0.2}, 1e-9),
     "slack tendon": (PAIR, ["<tendon><fixed name='t' stiffness='40' springlength='-.1 .1'><joint joint='p' coef='1'/></fixed></tendon>"], {}, 1e-7),
     "gear": (PAIR, [f"<equality><joint joint1='q' joint2='p' polycoef='.1 -2 0 0 0' {STIFF}/></equality>"], {"p": 0.3}, 1e-7),
+    "gear without teeth": (PAIR, [f"<equality><joint joint1='q' joint2='p' polycoef='0 1.2345678 0 0 0' {STIFF}/></equality>"], {"p": 0.3}, 1e-7),
     "rack": (arm(HINGED.format("p", "0 1 0", ""), "<joint name='q' type='slide' axis='1 0 0'/>"),
              [f"<equality><joint joint1='q' joint2='p' polycoef='0 .2 0 0 0' {STIFF}/></equality>"], {"p": 0.3}, 1e-7),
     "two slides": (SLIDES, [f"<equality><joint joint1='q' joint2='p' polycoef='0 .5 0 0 0' {STIFF}/></equality>"], {"p": 0.05}, 1e-7),
@@ -171,6 +172,18 @@ class Tells(unittest.TestCase):
         self.assertTrue(self.made("<camera/>" + PAIR, strict=True).imported)
         error = self.refused("import-lost", lambda: self.made(PAIR.replace("'q'", "'q' frictionloss='1'"), strict=True), "dry friction")
         self.assertTrue(all(d.severity == "error" for d in error.diagnostics))
+
+    def test_ratios_of_angles_become_those_of_whole_numbers(self):
+        for ratio, told in (("0.9999", "rounded"), ("-0.25", ""), ("2.5", ""), ("-0.3333333", "rounded"), ("1e-5", "10000 apart"), ("1e7", "10000 apart")):
+            m = self.made(PAIR, f"<equality><joint joint1='q' joint2='p' polycoef='0 {ratio} 0 0 0'/></equality>")
+            said = [d.message for d in m.imported if "rounded" in d.message or "apart" in d.message]
+            self.assertEqual(len(said), bool(told), ratio)
+            self.assertTrue(not told or told in said[0])
+            if "apart" in told:
+                self.assertNotIn("equality 0", m.joints)
+            else:
+                sol = lv.solve(m, 0.3)
+                self.assertAlmostEqual(sol["q"].angle[-1], float(ratio) * sol["p"].angle[-1], delta=2e-7)
 
     def test_limits_are_kept_left_out_or_told(self):
         bodies = arm(HINGED.format("p", "0 1 0", "range='-1 1'"), HINGED.format("q", "0 1 0", "range='0 2'"))
