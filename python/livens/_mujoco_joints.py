@@ -263,13 +263,13 @@ def couple(p: Parts, name: str, terms: Mapping[int, float]) -> None:
     terms = _in_teeth(p, name, terms)
     if not terms:
         return None
-    if any(kind["word"] == "coupling" for kind in schema().children["joint"]["kinds"]):
-        p.add("joint", {"name": name, "type": "coupling", "terms": Table({p.coordinates[j]: c for j, c in terms.items()}, p.place)})
-        return None
     joints = list(terms)
     of = {j: p.coordinates[j].rpartition(".")[0] for j in joints}
     if len(joints) == 1:
         p.add("drive", {"name": name, "type": "joint", "joint": of[joints[0]], "value": float(p.d.qpos[p.m.jnt_qposadr[joints[0]]])})
+        return None
+    if any(kind["word"] == "coupling" for kind in schema().children["joint"]["kinds"]):
+        p.add("joint", {"name": name, "type": "coupling", "terms": Table({p.coordinates[j]: c for j, c in terms.items()}, p.place)})
         return None
     if len(joints) > 2:
         return p.losses.add(_OF_MANY, name)
