@@ -70,6 +70,7 @@ def from_mjcf(file: Any, *, keyframe: int | str | None = None, qpos: Vector | No
                     _core.suggestion(str(limits), ["stop", "ignore"]))
     mujoco = need("mujoco", "mujoco", "from_mjcf")
     m, place = _compiled(mujoco, file)
+    _check_numbers(m, place)
     losses = Losses()
     data, of_keyframe = _state(mujoco, m, keyframe, qpos, qvel, at, rates, losses)
     parts = Parts(m, data, losses, limits == "stop", file_name(meshes) if meshes is not None else None, place)
@@ -132,6 +133,22 @@ def mujoco_errors() -> type[BaseException]:
     import mujoco   # type: ignore[import-not-found,unused-ignore]
     error: type[BaseException] = getattr(mujoco, "FatalError", RuntimeError)
     return error
+
+
+_NUMBERS = ("body_mass", "body_inertia", "body_gravcomp", "jnt_stiffness", "jnt_range", "jnt_actfrcrange", "dof_damping",
+            "dof_armature", "qpos0", "qpos_spring", "eq_data", "geom_size", "geom_rgba")
+
+
+def _check_numbers(m: Any, place: Place) -> None:
+    """MuJoCo has looked at those of a file, but an MjModel may be changed by hand."""
+    for field in _NUMBERS:
+        if hasattr(m, field) and not np.isfinite(getattr(m, field)).all():
+            raise fault("not-finite", f"'{field}' of the compiled model has numbers that are not finite", place=place)
+    for field in ("body_mass", "body_inertia"):
+        if np.any(getattr(m, field) < 0):
+            raise fault("mass-not-positive", f"'{field}' of the compiled model has negative numbers", place=place)
+    if not np.isfinite(m.opt.gravity).all():
+        raise fault("not-finite", "gravity of the compiled model is not finite", place=place)
 
 
 # Its state.

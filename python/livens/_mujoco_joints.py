@@ -32,6 +32,9 @@ _OTHER_EQUALITY = lost("equality", "equalities of flexible bodies, spatial tendo
 _SAME_BODY = Loss("import-lost", "equality", "equalities", "equalities within one body, or between bodies that do not move, are not needed")
 _OF_MANY = lost("equality", "couplings of more than two joints are not kept", many="equalities")
 _PINION = Loss("import-mended", "equality", "equalities", "couples two slides by two racks on a nearly massless pinion", names_all=True)
+_MOST_TEETH = 10000   # less one, with which a ratio is beside the bound
+_ROUNDED = Loss("import-mended", "equality", "equalities", "the ratio of angles is rounded to that of whole numbers below 10000", names_all=True)
+_TOO_FAR = lost("equality", "couplings of angles are not kept whose factors are more than 10000 apart", many="equalities")
 _OFF_TENDON = lost("equality", "couplings of tendons keep the difference that they have at the start", many="equalities")
 
 
@@ -131,7 +134,7 @@ def _add_rotor(p: Parts, j: int, table: Table, inertia: float) -> None:
         if rate:
             body["angular_velocity"] = (0.0, 0.0, rate)
         p.add("joint", {"name": line, "type": "revolute", "between": (WORLD, rotor), "at": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)})
-    p.add("body", body)
+    p.add("body", {**body, "visual": p.dot()})
     p.add("joint", {"name": p.names.of(f"rack of {name}", "joint"), "type": "rack_and_pinion",
                     "joints": (name, line) if m.jnt_type[j] == HINGE else (line, name), "radius": 1.0})
     return None
@@ -236,15 +239,37 @@ def _add_coupling(p: Parts, e: int, follows: Mapping[int, float], leads: Mapping
     return couple(p, name, terms)
 
 
+def _in_teeth(p: Parts, name: str, terms: Mapping[int, float]) -> dict[int, float]:
+    """With angles in a ratio of whole numbers, as a coupling of angles must have them; empty if they are too far apart."""
+    angles = [j for j in terms if p.m.jnt_type[j] == HINGE]
+    if len(angles) < 2:
+        return dict(terms)
+    largest = max(abs(terms[j]) for j in angles)
+    parts = np.array([terms[j] / largest for j in angles])
+    teeth = np.arange(1, _MOST_TEETH)
+    off = np.abs(np.round(np.outer(teeth, parts)) / teeth[:, None] - parts).max(axis=1)
+    n = int(teeth[np.argmax(off < 1e-12) if (off < 1e-12).any() else np.argmin(off)])
+    whole = np.round(n * parts)
+    if not whole.all():
+        p.losses.add(_TOO_FAR, name)
+        return {}
+    if off[n - 1] > 1e-12:
+        p.losses.add(_ROUNDED, f"{name}, by {off[n - 1]:.1e} of the larger")
+    return {**terms, **{j: float(k) / n * largest for j, k in zip(angles, whole)}}
+
+
 def couple(p: Parts, name: str, terms: Mapping[int, float]) -> None:
     """The sum of factors times coordinates stays what it is at the start."""
-    if any(kind["word"] == "coupling" for kind in schema().children["joint"]["kinds"]):
-        p.add("joint", {"name": name, "type": "coupling", "terms": Table({p.coordinates[j]: c for j, c in terms.items()}, p.place)})
+    terms = _in_teeth(p, name, terms)
+    if not terms:
         return None
     joints = list(terms)
     of = {j: p.coordinates[j].rpartition(".")[0] for j in joints}
     if len(joints) == 1:
         p.add("drive", {"name": name, "type": "joint", "joint": of[joints[0]], "value": float(p.d.qpos[p.m.jnt_qposadr[joints[0]]])})
+        return None
+    if any(kind["word"] == "coupling" for kind in schema().children["joint"]["kinds"]):
+        p.add("joint", {"name": name, "type": "coupling", "terms": Table({p.coordinates[j]: c for j, c in terms.items()}, p.place)})
         return None
     if len(joints) > 2:
         return p.losses.add(_OF_MANY, name)
@@ -266,7 +291,7 @@ def _add_pinion(p: Parts, name: str, leader: int, leads: str, follows: str, rati
     """Of radius 1 m in the world, which one slide turns and the other is moved by."""
     mass = TINY * p.smallest
     pinion, shaft = p.names.of(f"pinion of {name}", "body"), p.names.of(f"shaft of {name}", "joint")
-    body: dict[str, Any] = {"name": pinion, "mass": mass, "inertia": (mass,) * 3}
+    body: dict[str, Any] = {"name": pinion, "mass": mass, "inertia": (mass,) * 3, "visual": p.dot()}
     if rate := float(p.d.qvel[p.m.jnt_dofadr[leader]]):
         body["angular_velocity"] = (0.0, 0.0, rate)
     p.add("body", body)

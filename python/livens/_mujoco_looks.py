@@ -36,8 +36,12 @@ class Looks:
             self._geoms.setdefault(int(p.owner[p.m.geom_bodyid[g]]), []).append(g)
 
     def of(self, body: int) -> list[Table]:
-        """0: of the world."""
-        made = (self._visual(body, g) for g in self._geoms.get(body, []))
+        """0: of the world. Where a mesh that touches nothing is drawn, shapes of the same body that touch are not."""
+        m, geoms = self._p.m, self._geoms.get(body, [])
+        touches = (m.geom_contype | m.geom_conaffinity) != 0
+        dressed = {m.geom_bodyid[g] for g in geoms if self._folder is not None and m.geom_type[g] == _MESH and not touches[g]
+                   and m.geom_group[g] <= _LAST_GROUP}
+        made = (self._visual(body, g) for g in geoms if not (touches[g] and m.geom_bodyid[g] in dressed))
         return [table for table in made if table is not None]
 
     def _visual(self, body: int, g: int) -> Table | None:

@@ -65,6 +65,10 @@ class Parts:
             self.losses.add(_RENAMED, name)
         return name
 
+    def dot(self) -> list[Table]:
+        """What is drawn of a body that is there for computing alone: next to nothing."""
+        return [Table({"sphere": 1e-3 * self.radius ** 0.5}, self.place)]
+
     def in_body(self, body: int, point: Any) -> tuple[float, ...]:
         """A point of the world in coordinates of a body that moves, or of the world."""
         if body == 0:
@@ -182,7 +186,7 @@ class Parts:
         at = np.array(self.d.xanchor[j])
         velocity, spin = self.velocity(spatial, b, at)
         self.add("body", {"name": name, "mass": mass, "inertia": numbers([mass * self.radius] * 3),
-                          **self._placed(at, np.eye(3), velocity, spin)})
+                          **self._placed(at, np.eye(3), velocity, spin), "visual": self.dot()})
         self.losses.add(_BETWEEN, joint)
         return name
 

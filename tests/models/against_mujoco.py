@@ -24,15 +24,21 @@ CASES = {   # file, spread of angles (rad; slides a tenth), of rates, bound
 }
 
 
-def compiled(case):
+def compiled(case, solref=0.001):
     m = mujoco.MjModel.from_xml_path(str(ASSETS / CASES[case][0]))
+    switched_off(m, solref)
+    return m
+
+
+def switched_off(m, solref, actuation=False):
+    """What livens does not have or has otherwise; equalities are nearly rigid."""
     off = mujoco.mjtDisableBit
-    m.opt.disableflags |= off.mjDSBL_CONTACT | off.mjDSBL_LIMIT | off.mjDSBL_FRICTIONLOSS | off.mjDSBL_ACTUATION
+    m.opt.disableflags |= off.mjDSBL_CONTACT | off.mjDSBL_LIMIT | off.mjDSBL_FRICTIONLOSS
+    if not actuation:
+        m.opt.disableflags |= off.mjDSBL_ACTUATION
     m.opt.integrator, m.opt.timestep, m.opt.tolerance = mujoco.mjtIntegrator.mjINT_RK4, STEP, 1e-14
     m.opt.density = m.opt.viscosity = 0
-    m.tendon_stiffness[:] = m.tendon_damping[:] = 0
-    m.eq_solref[:], m.eq_solimp[:] = (0.001, 1), (0.9999, 0.9999, 0.001, 0.5, 2)   # nearly rigid
-    return m
+    m.eq_solref[:], m.eq_solimp[:] = (solref, 1), (0.9999, 0.9999, 0.001, 0.5, 2)
 
 
 def start(m, spread, rate):
@@ -58,9 +64,9 @@ def reference(m, q, v):
     return np.array(found)
 
 
-def difference(case, accuracy=1e-9, bend=0.0):
+def difference(case, accuracy=1e-9, bend=0.0, solref=0.001):
     """Largest of any coordinate at any instant, and livens' solution. `bend` spoils the reference's start."""
-    m = compiled(case)
+    m = compiled(case, solref)
     q, v = start(m, *CASES[case][1:3])
     model = lv.from_mjcf(m, qpos=q, qvel=v)
     begin = time.process_time()
@@ -87,6 +93,13 @@ class AgainstMuJoCo(unittest.TestCase):
         print(f"| {case} | {worst:.1e} | {sol.error:.1e} | {sol.n_elements} | {seconds:.2f} s |", flush=True)
         self.assertTrue(sol.success, sol.message)
         self.assertLess(worst, CASES[case][3])
+
+    def test_what_is_left_is_softness_of_mujoco(self):
+        """Its constraints become rigid as the square of `solref`, and its motion goes to that of livens."""
+        worst = [difference("Robotiq 2F-85", solref=solref)[0] for solref in (0.004, 0.002)]
+        print(f"| Robotiq 2F-85 at solref 4 and 2 ms | {worst[0]:.1e} | {worst[1]:.1e} |", flush=True)
+        self.assertLess(worst[1], worst[0] / 3)
+        self.assertGreater(worst[1], worst[0] / 5)
 
     def test_a_start_that_is_off_is_seen(self):
         self.assertGreater(difference("HalfCheetah", bend=1e-7)[0], 1e-8)

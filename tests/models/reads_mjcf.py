@@ -61,12 +61,32 @@ CASES = {   # the model, what moves at first by joint, and the bound
                       "<actuator><position name='m' tendon='t' kp='3'/></actuator>"], {"p": 0.4, "q": 0.2}, 1e-9),
     "slack tendon": (PAIR, ["<tendon><fixed name='t' stiffness='40' springlength='-.1 .1'><joint joint='p' coef='1'/></fixed></tendon>"], {}, 1e-7),
     "gear": (PAIR, [f"<equality><joint joint1='q' joint2='p' polycoef='.1 -2 0 0 0' {STIFF}/></equality>"], {"p": 0.3}, 1e-7),
+    "gear without teeth": (PAIR, [f"<equality><joint joint1='q' joint2='p' polycoef='0 1.2345678 0 0 0' {STIFF}/></equality>"], {"p": 0.3}, 1e-7),
     "rack": (arm(HINGED.format("p", "0 1 0", ""), "<joint name='q' type='slide' axis='1 0 0'/>"),
              [f"<equality><joint joint1='q' joint2='p' polycoef='0 .2 0 0 0' {STIFF}/></equality>"], {"p": 0.3}, 1e-7),
     "two slides": (SLIDES, [f"<equality><joint joint1='q' joint2='p' polycoef='0 .5 0 0 0' {STIFF}/></equality>"], {"p": 0.05}, 1e-7),
     "held joint": (PAIR, [f"<equality><joint joint1='q' polycoef='.4 0 0 0 0' {STIFF}/></equality>"], {"p": 0.3}, 1e-7),
     "connect": (PAIR + body("c", HINGED.format("r", "0 1 0", "") + LINK, "0 0 -.3"),
                 [f"<equality><connect body1='a' body2='c' anchor='.1 0 0' {STIFF}/></equality>"], {}, 1e-6),
+    "slide and ball": (arm("<joint name='x' type='slide' axis='0 0 1' stiffness='500'/><joint name='p' type='ball' damping='.1'/>",
+                           HINGED.format("q", "0 1 0", "")), [], {"x": 0.02, "q": 0.3}, 1e-7),
+    "connect of sites": (PAIR.replace("name='p'", "name='p' damping='.1'") + body("c", HINGED.format("r", "0 1 0", "") + LINK
+                         + "<site name='s' pos='.1 0 .3'/>", "0 0 -.3") + "<site name='w' pos='.1 0 0'/>",
+                         [f"<equality><connect site1='s' site2='w' {STIFF}/></equality>"], {}, 1e-6),
+    "weld of sites": (body("a", HINGED.format("p", "0 1 0", "") + LINK + "<site name='s' pos='.3 .1 -.1' euler='.1 .2 .3'/>")
+                      + body("c", "<freejoint/>" + LINK + "<site name='t' euler='.1 .2 .3'/>", ".3 .1 -.1"),
+                      [f"<equality><weld site1='s' site2='t' {STIFF}/></equality>"], {}, 1e-6),
+    "weld to the world": (arm("<joint name='p' type='ball'/>", "<joint name='q' type='ball'/>") + body("c", "<freejoint/>" + LINK, ".3 .1 -.1"),
+                          [f"<equality><weld body1='c' {STIFF}/></equality>"], {}, 1e-6),
+    "weld at a point": (body("a", HINGED.format("p", "0 1 0", "") + LINK) + body("c", "<freejoint/>" + LINK, ".3 .1 -.1").replace("name='c'", "name='c' euler='.4 0 .2'"),
+                        [f"<equality><weld body1='a' body2='c' anchor='.1 .2 0' {STIFF}/></equality>"], {}, 1e-6),
+    "coupled tendons": (PAIR, ["<tendon><fixed name='t'><joint joint='p' coef='.3'/></fixed><fixed name='u'><joint joint='q' coef='.6'/></fixed></tendon>",
+                               f"<equality><tendon tendon1='u' tendon2='t' polycoef='0 1.5 0 0 0' {STIFF}/></equality>"], {}, 1e-7),
+    "motor in the parent": (PAIR, ["<actuator><motor name='m' jointinparent='q' gear='3'/></actuator>"], {}, 1e-9),
+    "limit of the joint": (arm(HINGED.format("p", "0 1 0", "actuatorfrcrange='-4 4'"), HINGED.format("q", "0 1 0", "")),
+                           ["<actuator><position name='m' joint='p' kp='30'/></actuator>"], {}, 1e-7),
+    "general law": (PAIR, ["<actuator><general name='m' joint='p' gaintype='affine' gainprm='3 .5 -.2' biastype='affine' biasprm='1 -4 -.3' gear='1.5'/></actuator>"],
+                    {"p": 0.2}, 1e-9),
     "weld": (body("a", HINGED.format("p", "0 1 0", "") + LINK) + body("c", "<freejoint/>" + LINK, ".3 .1 -.1"),
              [f"<equality><weld body1='a' body2='c' {STIFF}/></equality>"], {}, 1e-6),
 }
@@ -172,6 +192,18 @@ class Tells(unittest.TestCase):
         error = self.refused("import-lost", lambda: self.made(PAIR.replace("'q'", "'q' frictionloss='1'"), strict=True), "dry friction")
         self.assertTrue(all(d.severity == "error" for d in error.diagnostics))
 
+    def test_ratios_of_angles_become_those_of_whole_numbers(self):
+        for ratio, told in (("0.9999", "rounded"), ("-0.25", ""), ("2.5", ""), ("-0.3333333", "rounded"), ("1e-5", "10000 apart"), ("1e7", "10000 apart")):
+            m = self.made(PAIR, f"<equality><joint joint1='q' joint2='p' polycoef='0 {ratio} 0 0 0'/></equality>")
+            said = [d.message for d in m.imported if "rounded" in d.message or "apart" in d.message]
+            self.assertEqual(len(said), bool(told), ratio)
+            self.assertTrue(not told or told in said[0])
+            if "apart" in told:
+                self.assertNotIn("equality 0", m.joints)
+            else:
+                sol = lv.solve(m, 0.3)
+                self.assertAlmostEqual(sol["q"].angle[-1], float(ratio) * sol["p"].angle[-1], delta=2e-7)
+
     def test_limits_are_kept_left_out_or_told(self):
         bodies = arm(HINGED.format("p", "0 1 0", "range='-1 1'"), HINGED.format("q", "0 1 0", "range='0 2'"))
         m = self.made(bodies)
@@ -257,6 +289,17 @@ class Tells(unittest.TestCase):
         text = model(PAIR)
         for given in (mujoco.MjModel.from_xml_string(text), mujoco.MjSpec.from_string(text)):
             self.assertEqual(lv.from_mjcf(given), lv.from_mjcf(text))
+
+    def test_a_compiled_model_that_was_spoilt_is_refused(self):
+        for field, value, code in (("body_mass", np.nan, "not-finite"), ("body_mass", -1, "mass-not-positive"),
+                                   ("dof_damping", np.inf, "not-finite"), ("qpos0", np.nan, "not-finite")):
+            m = mujoco.MjModel.from_xml_string(model(PAIR))
+            getattr(m, field)[-1] = value
+            self.refused(code, lambda m=m: lv.from_mjcf(m))
+        m.opt.gravity[:] = np.nan
+        m.qpos0[:] = 0
+        self.refused("not-finite", lambda: lv.from_mjcf(m), "gravity")
+        self.refused("expression-syntax", lambda: self.made(PAIR, "<actuator><motor name='m' joint='p'/></actuator>", control={"m": "1 +"}))
 
     def test_the_page_does_what_it_shows(self):
         root = menagerie.ROOT

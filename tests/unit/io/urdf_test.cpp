@@ -303,6 +303,13 @@ TEST(Urdf, LoopsThatAreStatedAreClosedAtTheStart)
     EXPECT_EQ(n_told(read_robot(bars, options), "unknown-choice", "'glue'"), 1);
 }
 
+TEST(Urdf, AModelOfMuJoCoIsReferredToItsReader)
+{
+    const UrdfResult result = parse_urdf("<mujoco model='m'/>", "m.xml");
+    ASSERT_EQ(result.diagnostics.size(), 1u);
+    EXPECT_NE(result.diagnostics.front().help.find("lv.from_mjcf"), std::string::npos);
+}
+
 TEST(Urdf, WhatIsWrongIsRefusedByCodeAndLine)
 {
     const auto change = [](const std::string& old, const std::string& by) {

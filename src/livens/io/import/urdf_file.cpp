@@ -249,9 +249,11 @@ UrdfFile UrdfReader::file(const XmlElement& root)
     UrdfFile file;
     file.place = root.place;
     if (root.name != "robot") {
-        const bool is_other = root.name == "mujoco" || root.name == "sdf";
+        std::string_view help;
+        if (root.name == "mujoco") help = "lv.from_mjcf(file) of the Python package reads models of MuJoCo";
+        if (root.name == "sdf") help = "this is no URDF but a file of another format";
         findings_.error(root.place, "urdf-tag", "the file begins with <" + root.name + ">, not <robot>",
-                        {"", is_other ? "this is no URDF but a file of another format" : ""});
+                        {"", std::string(help)});
         return file;
     }
     check(
