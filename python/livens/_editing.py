@@ -39,7 +39,7 @@ class Tree(Adders):
     _text: str | None   # as it was read, as long as nothing was edited
     _functions: dict[str, tuple[str, Callable[..., Any]]]
     _built: dict[Any, tuple[Any, list[Diagnostic]]]
-    _counted: dict[tuple[str, ...], Coordinates]
+    _counted: dict[tuple[tuple[str, ...], float | None], Coordinates]
     _names: dict[str, list[tuple[str, Table]]] | None
     _order: dict[int, int]
     _warned: bool
@@ -103,7 +103,7 @@ class Tree(Adders):
 
     def _forget(self) -> None:
         self._built, self._names, self._order, self._warned = {}, None, {}, False
-        self._counted = {}   # coordinates, by those that were wanted
+        self._counted = {}   # coordinates, by those that were wanted and the time
 
     def _touch(self) -> None:
         self._text = None

@@ -387,15 +387,15 @@ class Model(Tree):
             InputError: ``coordinates-missing`` where something can move that no coordinate tells, such as the two turns of a
                 universal joint; for errors in the model.
         """
-        return self._coordinates(())
+        return self._coordinates((), None)
 
-    def at(self, q: Any = None, v: Any = None) -> MechanismState:
+    def at(self, q: Any = None, v: Any = None, *, t: float | str | None = None) -> MechanismState:
         """The mechanism in a state: poses, velocities, energies, Jacobians, mass matrix, forces, linearisation.
 
         Bodies are led from where they are placed to the stated coordinates: at once where joints form trees, else in small
         steps along the loops, so that the mechanism stays on its branch. Drives are released: the coordinates take their
-        place; joints that do not act at the initial time are left out, and loads are taken then. Limits of joints act as
-        the springs that they are.
+        place; joints that do not act at ``t`` are left out, and loads are taken then. Limits of joints act as the springs
+        that they are.
 
         Args:
             q: A mapping: ``{"elbow.angle": "30 deg"}`` of joints, ``"base.position"``, ``"base.quaternion"`` (or
@@ -404,6 +404,7 @@ class Model(Tree):
                 order of ``coordinates.q``. None: as the bodies are placed.
             v: Rates: a mapping by the same names (``"elbow.angle"`` or ``"elbow.angle_rate"``, ``"base.velocity"``,
                 ``"base.angular_velocity"``), others zero, or an array in the order of ``coordinates.v``. None: at rest.
+            t: The time, s. Default: the initial time.
 
         Raises:
             InputError: ``coordinate-unknown``, ``coordinate-value``, ``coordinate-twice``; ``coordinates-dependent`` for one
@@ -417,16 +418,18 @@ class Model(Tree):
             >>> pivot = m.add_revolute("pivot", "world", rod, at=(0, 0, 0), axis=(0, 1, 0))
             >>> state = m.at({"pivot.angle": "90 deg"}, {"pivot.angle": 2})
             >>> state["rod"].position.round(12).tolist(), round(state.kinetic, 6)
-            ([0.0, 0.0, -0.5], 1.335)
+            ([0.0, 0.0, -0.5], 1.334167)
             >>> m.at().gravity_forces.round(6).tolist(), m.at().jacobian("rod")[2].round(6).tolist()
             ([-9.81], [-0.5])
         """
-        return state_of(self, q, v)
+        return state_of(self, q, v, t)
 
-    def _coordinates(self, wanted: tuple[str, ...]) -> Coordinates:
-        if wanted not in self._counted:
-            self._counted[wanted] = coordinates_of(self._as_it_starts(), wanted)
-        return self._counted[wanted]
+    def _coordinates(self, wanted: tuple[str, ...], t: float | None) -> Coordinates:
+        if (wanted, t) not in self._counted:
+            if len(self._counted) >= 16:
+                self._counted.pop(next(iter(self._counted)))
+            self._counted[wanted, t] = coordinates_of(self._as_it_starts(), wanted, t)
+        return self._counted[wanted, t]
 
     # Rest.
 

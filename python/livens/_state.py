@@ -13,6 +13,7 @@ from ._errors import InputError, fault
 from ._parts import Floats, Parts
 from ._rest import StateMatrices, _Coordinates
 from ._rotations import ORIENTATIONS, as_key, doubt, is_rotation
+from ._values import Condition
 
 if TYPE_CHECKING:
     from ._generated import Body, Point
@@ -26,6 +27,17 @@ class Coordinates:
     """Independent coordinates of a model, which tell where all bodies are; see :attr:`Model.coordinates`.
 
     Iteration yields the names of the numbers in ``q``.
+
+    Example:
+        >>> import livens as lv
+        >>> m = lv.Model("flight")
+        >>> rod = m.add_body("rod", lv.box(1, 0.1, 0.1, mass=1))
+        >>> flap = m.add_body("flap", lv.box(0.3, 0.1, 0.1, mass=1), position=(0.65, 0, 0))
+        >>> hinge = m.add_revolute("hinge", rod, flap, at=(0.5, 0, 0), axis=(0, 1, 0))
+        >>> m.coordinates
+        <livens.Coordinates: rod.x, rod.y, rod.z, rod.qw, rod.qx, rod.qy, rod.qz, hinge.angle>
+        >>> m.coordinates.v[3:]
+        ('rod.wx', 'rod.wy', 'rod.wz', 'hinge.angle_rate')
     """
 
     def __init__(self, found: Any) -> None:
@@ -93,8 +105,8 @@ class MechanismState:
         >>> pivot = m.add_revolute("pivot", "world", thread, at=(0, 0, 0), axis=(0, 1, 0))
         >>> weld = m.add_spherical("end", thread, rod, at=(0.5, 0, 0))
         >>> state = m.at({"pivot.angle": "90 deg"}, {"pivot.angle": 2})
-        >>> state["rod"].position.round(12).tolist(), state["rod"].velocity.round(12).tolist()
-        ([0.0, 0.0, -0.5], [-1.0, 0.0, 0.0])
+        >>> state["rod"].position.round(12).tolist(), state["rod"].velocity.round(12)[0].item()
+        ([0.0, 0.0, -0.5], -1.0)
         >>> m.at().gravity_forces.round(3).tolist()   # torque that holds it level
         [-14.715]
     """
@@ -106,19 +118,20 @@ class MechanismState:
 
     @property
     def q(self) -> Floats:
-        """Numbers of the coordinates, shape (len(coordinates.q),); angles with their full turns."""
+        """Numbers of the coordinates, rad, m, or relative of quaternions, shape (len(coordinates.q),); angles with their
+        full turns."""
         q: Floats = self._state.q
         return q
 
     @property
     def v(self) -> Floats:
-        """Rates, shape (n,)."""
+        """Rates, rad/s, m/s, shape (n,)."""
         v: Floats = self._state.v
         return v
 
     @property
     def t(self) -> float:
-        """The time at which loads are taken, s: the initial time."""
+        """The time at which loads are taken, s."""
         return float(self._state.t)
 
     @property
@@ -243,6 +256,19 @@ class MechanismState:
         n = len(self.v)
         return StateMatrices(A, B, np.eye(2 * n), np.zeros((2 * n, n)), tuple(small), (*small, *self.coordinates.v))
 
+    @property
+    def state(self) -> Condition:
+        """All bodies as they are and move there: ``lv.solve(m, 5, start=m.at(q, v).state)``."""
+        def keys(body: PlacedBody) -> dict[str, Any]:
+            kept: dict[str, Any] = {"position": tuple(body.position.tolist()), "velocity": tuple(body.velocity.tolist())}
+            if not np.isnan(body.quaternion[0]):
+                kept.update(quaternion=tuple(body.quaternion.tolist()), angular_velocity=tuple(body.angular_velocity.tolist()))
+            return kept
+        turned = tuple({"joint": name.rpartition(".")[0], "coordinate": "angle", "value": float(value)}
+                       for name, value, placed in zip(self.coordinates.q, self.q, self.coordinates.placed)
+                       if name.endswith(".angle") and abs(value - placed) > 3)   # bodies do not tell turns
+        return Condition("state", {name: keys(body) for name, body in self.bodies.items()}, turned)
+
     def __repr__(self) -> str:
         values = "".join(f"\n  {name:<24}{value:.6g}" for name, value in list(zip(self.coordinates.q, self.q))[:40])
         return f"<livens.MechanismState: {len(self.v)} rates>{values}"
@@ -257,11 +283,12 @@ def _number(value: Any, unit: str, path: str) -> float:
         raise fault("wrong-type", f"'{path}' is one number, not {value!r}", path) from None
 
 
-def _vector(value: Any, n: int, path: str) -> list[float]:
-    numbers = np.asarray(value, dtype=float).ravel()
-    if len(numbers) != n:
-        raise fault("coordinate-value", f"'{path}' has {n} numbers, not {len(numbers)}", path)
-    return [float(x) for x in numbers]
+def _vector(value: Any, n: int, path: str, unit: str = "") -> list[float]:
+    """Numbers, each maybe a string with a unit."""
+    flat = np.asarray(value, dtype=object).ravel()
+    if len(flat) != n:
+        raise fault("coordinate-value", f"'{path}' has {n} numbers, not {len(flat)}", path)
+    return [_number(x, unit, path) for x in flat]
 
 
 def _unit(name: str) -> str:
@@ -277,7 +304,7 @@ def _quaternion(model: Model, name: str, value: Any) -> tuple[str, list[float]]:
         doubt(value)
         return name, _vector(value, 4, name)
     if word == "rotation_vector":
-        return f"{body}.quaternion", list(_core.quaternion(_vector(value, 3, name)))
+        return f"{body}.quaternion", list(_core.quaternion(_vector(value, 3, name, "rad")))
     rows = np.reshape(_vector(value, 9, name), (3, 3))
     return f"{body}.quaternion", list(_core.quaternion([float(x) for x in (rows if word == "directors" else rows.T).ravel()]))
 
@@ -297,7 +324,7 @@ def numbers_by_name(model: Model, given: Mapping[str, Any]) -> dict[str, list[fl
         body, _, word = name.rpartition(".")
         is_body = body in model.bodies
         if is_body and word == "position":
-            for axis, number in zip("xyz", _vector(value, 3, name)):
+            for axis, number in zip("xyz", _vector(value, 3, name, "m")):
                 put(f"{body}.{axis}", [number])
         elif is_body and (word in ORIENTATIONS or word == "rotation"):
             put(*_quaternion(model, name, value))
@@ -318,13 +345,13 @@ def _unknown(coordinates: list[str], name: str, word: str) -> InputError:
                  _core.suggestion(name, coordinates) if coordinates else "the model has none")
 
 
-def coordinates_of(scenario: Any, wanted: tuple[str, ...]) -> Coordinates:
-    """With the wanted ones first; for :class:`Model`, which keeps them."""
+def coordinates_of(scenario: Any, wanted: tuple[str, ...], t: float | None) -> Coordinates:
+    """At an instant, with the wanted ones first; for :class:`Model`, which keeps them."""
     known = _core.coordinate_names(scenario)
     for name in wanted:
         if name not in known:
             raise _unknown(known, name, "q")
-    return Coordinates(_core.coordinates(scenario, list(wanted)))
+    return Coordinates(_core.coordinates(scenario, list(wanted), t))
 
 
 def _rates(coordinates: Coordinates, given: Any, word: str, is_velocity: bool = True) -> list[float]:
@@ -341,7 +368,7 @@ def _rates(coordinates: Coordinates, given: Any, word: str, is_velocity: bool = 
         body, _, kind = str(name).rpartition(".")
         if kind in _OTHER:
             names = [f"{body}.{axis}_rate" if kind == "velocity" else f"{body}.w{axis}" for axis in "xyz"]
-            numbers = _vector(value, 3, name)
+            numbers = _vector(value, 3, name, "m/s" if kind == "velocity" else "rad/s")
         else:
             names = [name if name in rates else f"{name}_rate"]
             numbers = [_number(value, _unit(str(name).removesuffix("_rate")) + ("/s" if is_velocity else ""), name)]
@@ -357,7 +384,7 @@ def _place(model: Model, part: Any, point: Any) -> tuple[int, list[float]]:
     name = part.name if isinstance(part, Entry) else part
     bodies = list(model.bodies)
     if name in bodies:
-        return bodies.index(name), [0.0] * 3 if point is None else _vector(point, 3, "point")
+        return bodies.index(name), [0.0] * 3 if point is None else _vector(point, 3, "point", "m")
     if name in model.points:
         if point is not None:
             raise fault("coordinate-value", f"'{name}' is a point itself: point= is of bodies", "point")
@@ -367,16 +394,19 @@ def _place(model: Model, part: Any, point: Any) -> tuple[int, list[float]]:
     raise unknown_name("body or point of a body", name, [*bodies, *model.points])
 
 
-def state_of(model: Model, q: Any, v: Any) -> MechanismState:
+def state_of(model: Model, q: Any, v: Any, t: Any = None) -> MechanismState:
     """For :meth:`Model.at`."""
+    instant = None if t is None else _number(t, "s", "t")
+    if instant is not None and not np.isfinite(instant):
+        raise fault("coordinate-value", "the time is not finite", "t")
     stated: dict[str, list[float]] = {}
     if isinstance(q, Mapping):
         stated = numbers_by_name(model, q)
-    coordinates = model._coordinates(tuple(stated))
+    coordinates = model._coordinates(tuple(stated), instant)
     if q is None or isinstance(q, Mapping):
         numbers: list[float] = []
         placed = list(coordinates.placed)
-        for name, _, n, _ in coordinates._found.list:
+        for name, _, n, _ in coordinates._found.entries:
             numbers += stated.get(name, placed[:n])
             del placed[:n]
     else:
@@ -405,8 +435,7 @@ def reach(m: Model, tool: str | Body | Point, pose: Any, *, point: Vector | None
         start: Where to start from, as ``q`` of :meth:`Model.at`. Default: as the bodies are placed.
 
     Returns:
-        Coordinates by name, for :meth:`Model.at`; ``solve`` starts there with ``start=lv.state(..)`` or
-        ``m.start.coordinates``.
+        Coordinates by name, for :meth:`Model.at`; a motion starts there with ``lv.solve(m, 5, start=m.at(q).state)``.
 
     Raises:
         InputError: ``pose-unreachable`` with the distance that is left; and as :meth:`Model.at`.
@@ -420,15 +449,15 @@ def reach(m: Model, tool: str | Body | Point, pose: Any, *, point: Vector | None
         >>> elbow = m.add_revolute("elbow", upper, lower, at=(1, 0, 0), axis=(0, 0, 1))
         >>> q = lv.reach(m, "lower", (0.5, 1.2, 0), point=(0.5, 0, 0))
         >>> {name: round(value, 6) for name, value in q.items()}
-        {'shoulder.angle': 0.310379, 'elbow.angle': 0.157119}
+        {'shoulder.angle': 0.312793, 'elbow.angle': 0.155627}
     """
     body, place = _place(m, tool, point)
     position, turned = _pose(pose, rotation)
     state = state_of(m, start, None)
     reached = state._state.reaching(body, place, position, turned)
     found: dict[str, Any] = {}
-    numbers = list(reached.q)
-    for name, _, n, _ in state.coordinates._found.list:
+    numbers = reached.q.tolist()
+    for name, _, n, _ in state.coordinates._found.entries:
         found[name] = numbers[0] if n == 1 else tuple(numbers[:n])
         del numbers[:n]
     return found
@@ -439,7 +468,7 @@ def _pose(pose: Any, rotation: Any) -> tuple[list[float], list[float] | None]:
         if rotation is not None:
             raise fault("orientation-conflict", "the pose has a rotation, and rotation= is given", "rotation", "keep one")
         pose, rotation = pose
-    position = _vector(pose, 3, "pose")
+    position = _vector(pose, 3, "pose", "m")
     if not np.isfinite(position).all():
         raise fault("coordinate-value", "the position of the pose is not finite", "pose")
     if rotation is None:

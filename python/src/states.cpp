@@ -23,9 +23,11 @@ using Of = GeneralisedCoordinate::Of;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-GeneralisedCoordinates coordinates(const Shared& scenario, const std::vector<std::string>& wanted)
+GeneralisedCoordinates coordinates(const Shared& scenario, const std::vector<std::string>& wanted,
+                                   std::optional<double> t)
 {
-    const KnownState known = known_state(*scenario);
+    KnownState known = known_state(*scenario);
+    known.state.t = t.value_or(known.state.t);
     const nb::gil_scoped_release unlock;
     return {scenario->model, known.state, known.initial, wanted};
 }
@@ -164,7 +166,7 @@ GeneralisedState reaching(const GeneralisedState& at, int body, const Numbers& p
 void add_states(nb::module_& m)
 {
     nb::class_<GeneralisedCoordinates>(m, "GeneralisedCoordinates")
-        .def_prop_ro("list", &list_of)
+        .def_prop_ro("entries", &list_of)
         .def_prop_ro("names_of_numbers", &GeneralisedCoordinates::names_of_numbers)
         .def_prop_ro("names_of_rates", &GeneralisedCoordinates::names_of_rates)
         .def_prop_ro("placed", [](const GeneralisedCoordinates& c) { return vector_of(Numbers(c.placed())); })
@@ -217,7 +219,7 @@ void add_states(nb::module_& m)
     m.def("coordinate_names", &coordinate_names, nb::arg("scenario"));
     m.def("quaternion", &quaternion_of, nb::arg("turn"));
     m.def("directors", &directors_of, nb::arg("quaternion"));
-    m.def("coordinates", &coordinates, nb::arg("scenario"), nb::arg("wanted"));
+    m.def("coordinates", &coordinates, nb::arg("scenario"), nb::arg("wanted"), nb::arg("t").none());
 }
 
 }   // namespace livens::python
