@@ -47,7 +47,8 @@ void check_numbers(const Mechanism& mechanism, std::span<const double> given, st
 
 GeneralisedCoordinates::GeneralisedCoordinates(const Model& model, const State& placed, StartPolicy policy,
                                                const std::vector<std::string>& wanted)
-    : mechanism_(std::make_shared<const Mechanism>(model, placed, policy, wanted))
+    : mechanism_(std::make_shared<const Mechanism>(model, placed, policy, wanted)),
+      start_(std::make_shared<const Placed>(placed_at_start(*mechanism_)))
 {}
 
 const std::vector<GeneralisedCoordinate>& GeneralisedCoordinates::list() const
@@ -92,7 +93,7 @@ GeneralisedState GeneralisedCoordinates::at(std::span<const double> numbers,
     const std::vector<double> rest(static_cast<std::size_t>(n_rates()), 0.0);
     if (rates.empty()) rates = rest;
     check_numbers(*mechanism_, rates, rest.size(), names_of_rates(), "v");
-    return {mechanism_, lead(*mechanism_, placed_at_start(*mechanism_), numbers), rates};
+    return {mechanism_, lead(*mechanism_, *start_, numbers), rates};
 }
 
 GeneralisedState::Parts::Parts(std::shared_ptr<const Mechanism> the_mechanism, Placed the_placed,

@@ -43,7 +43,7 @@ struct Placed;
 ///
 /// Throws InputError: `coordinate-unknown`, `coordinate-twice`; `coordinates-dependent` for a wanted one that
 /// joints or the wanted ones before it determine; `coordinates-missing` where something can still move, such
-/// as the two turns of a universal joint; and what consistent_start() throws.
+/// as the two turns of a universal joint; `coordinates-singular`; and what consistent_start() throws.
 class GeneralisedCoordinates {
 public:
     GeneralisedCoordinates(const Model& model, const State& placed, StartPolicy policy,
@@ -71,6 +71,7 @@ public:
 
 private:
     std::shared_ptr<const Mechanism> mechanism_;
+    std::shared_ptr<const Placed> start_;
 };
 
 /// x' = A x + B u about a state: x are small changes of coordinates and rates (of a turn a rotation vector in
