@@ -16,6 +16,7 @@ from ._generated import Adders, Body, Drive, Joint, Load, Point, Sensor
 from ._included import has_point
 from ._places import arranged, diagnostic_of, faults_in, key_below, of_table, path_at, path_of, store, words_in
 from ._rotations import oriented, with_rotation
+from ._state import Coordinates
 from ._tree import KINDS, Table, diagnostics_of_text, frozen, plain, schema, toml
 from ._values import Shape
 
@@ -38,6 +39,7 @@ class Tree(Adders):
     _text: str | None   # as it was read, as long as nothing was edited
     _functions: dict[str, tuple[str, Callable[..., Any]]]
     _built: dict[Any, tuple[Any, list[Diagnostic]]]
+    _counted: dict[tuple[tuple[str, ...], float | None], Coordinates]
     _names: dict[str, list[tuple[str, Table]]] | None
     _order: dict[int, int]
     _warned: bool
@@ -101,6 +103,7 @@ class Tree(Adders):
 
     def _forget(self) -> None:
         self._built, self._names, self._order, self._warned = {}, None, {}, False
+        self._counted = {}   # coordinates, by those that were wanted and the time
 
     def _touch(self) -> None:
         self._text = None

@@ -19,6 +19,7 @@ from ._other_names import of_model
 from ._parameters import Parameters
 from ._places import some_time
 from ._rest import Equilibrium, EquilibriumError, Linearisation, Modes
+from ._state import Coordinates, MechanismState, coordinates_of, state_of
 from ._tree import KINDS, Table, frozen, toml
 
 if TYPE_CHECKING:
@@ -372,6 +373,63 @@ class Model(Tree):
         """
         _, found = self._build({} if "time" in self._root else {"time": some_time(self._root)})
         return found
+
+    # States.
+
+    @property
+    def coordinates(self) -> Coordinates:
+        """Independent coordinates that tell where all bodies are: their order is that of arrays for :meth:`at`.
+
+        Taken are coordinates of joints in the order of the model (in a loop the first ones that are independent), and of
+        bodies that these leave free the position and quaternion. Drives do not count.
+
+        Raises:
+            InputError: ``coordinates-missing`` where something can move that no coordinate tells, such as the two turns of a
+                universal joint; for errors in the model.
+        """
+        return self._coordinates((), None)
+
+    def at(self, q: Any = None, v: Any = None, *, t: float | str | None = None) -> MechanismState:
+        """The mechanism in a state: poses, velocities, energies, Jacobians, mass matrix, forces, linearisation.
+
+        Bodies are led from where they are placed to the stated coordinates: at once where joints form trees, else in small
+        steps along the loops, so that the mechanism stays on its branch. Drives are released: the coordinates take their
+        place; joints that do not act at ``t`` are left out, and loads are taken then. Limits of joints act as the springs
+        that they are.
+
+        Args:
+            q: A mapping: ``{"elbow.angle": "30 deg"}`` of joints, ``"base.position"``, ``"base.quaternion"`` (or
+                ``rotation_vector``, ``directors``, ``rotation``), ``"base.x"`` of bodies. The coordinates that are named become
+                those of the state; others that are independent of them stay as the bodies are placed. Or an array in the
+                order of ``coordinates.q``. None: as the bodies are placed.
+            v: Rates: a mapping by the same names (``"elbow.angle"`` or ``"elbow.angle_rate"``, ``"base.velocity"``,
+                ``"base.angular_velocity"``), others zero, or an array in the order of ``coordinates.v``. None: at rest.
+            t: The time, s. Default: the initial time.
+
+        Raises:
+            InputError: ``coordinate-unknown``, ``coordinate-value``, ``coordinate-twice``; ``coordinates-dependent`` for one
+                that joints or others determine; ``loop-open`` with the joint that stays open and by how much;
+                ``coordinates-singular`` at a dead centre; ``coordinates-missing``; for errors in the model.
+
+        Example:
+            >>> import livens as lv
+            >>> m = lv.Model("pendulum", gravity=(0, 0, -9.81))
+            >>> rod = m.add_body("rod", lv.box(1, 0.05, 0.05, mass=2), position=(0.5, 0, 0))
+            >>> pivot = m.add_revolute("pivot", "world", rod, at=(0, 0, 0), axis=(0, 1, 0))
+            >>> state = m.at({"pivot.angle": "90 deg"}, {"pivot.angle": 2})
+            >>> state["rod"].position.round(12).tolist(), round(state.kinetic, 6)
+            ([0.0, 0.0, -0.5], 1.334167)
+            >>> m.at().gravity_forces.round(6).tolist(), m.at().jacobian("rod")[2].round(6).tolist()
+            ([-9.81], [-0.5])
+        """
+        return state_of(self, q, v, t)
+
+    def _coordinates(self, wanted: tuple[str, ...], t: float | None) -> Coordinates:
+        if (wanted, t) not in self._counted:
+            if len(self._counted) >= 16:
+                self._counted.pop(next(iter(self._counted)))
+            self._counted[wanted, t] = coordinates_of(self._as_it_starts(), wanted, t)
+        return self._counted[wanted, t]
 
     # Rest.
 

@@ -28,7 +28,13 @@ MODEL = {
     "equilibrium static statics staticequilibrium": "m.find_equilibrium()",
     "eigenfrequencies eigenmodes eigenvalues modes modal modalanalysis frequencies": "m.vibration_modes()",
     "linearize linear": "m.linearise()",
-    "massmatrix jacobian": "m.linearise() gives mass, damping and stiffness matrices about a rest",
+    "massmatrix jacobian inertiamatrix coriolis bias gravitytorques gravitycompensation": "these are asked of a state: "
+        "m.at({\"elbow.angle\": 0.5}).mass_matrix, .jacobian(\"tool\"), .bias_forces, .gravity_forces",
+    "forwardkinematics fk kinematics pose poses": "m.at({\"elbow.angle\": 0.5})[\"tool\"].position",
+    "inversedynamics rnea": "m.at(q, v).inverse_dynamics(a)",
+    "inversekinematics ik": "lv.reach(m, \"tool\", (0.5, 0, 1)) returns coordinates for m.at(q)",
+    "q dof dofs ndof joints coordinates generalizedcoordinates": "m.coordinates lists independent coordinates, m.joints the "
+        "joints",
     "save write export totext dump tofile savetoml": "m.to_toml('model.toml')",
     "load read open": "lv.load('model.toml')",
     "validate verify isvalid errors": "m.check()",
@@ -55,6 +61,9 @@ MODULE = {
     "pi": "np.pi",
     "g gravity": "lv.Model(\"name\", gravity=(0, 0, -9.81))",
     "plot show animate view": "it is the solution's: sol = lv.solve(m, 10), then sol.plot(\"rod.position\"); " + _PAGE,
+    "inversekinematics ik": "lv.reach(m, \"tool\", (0.5, 0, 1))",
+    "forwardkinematics fk inversedynamics rnea crba aba jacobian massmatrix": "they are asked of a state: m.at(q, v).mass_matrix, "
+        ".jacobian(\"tool\"), .inverse_dynamics(a), .accelerations()",
     "rk45 bdf rungekutta euler hht": "lv.solve(m, 10) chooses the method; method=\"radau\" for stiff models",
     "cube cuboid brick": "lv.box(x, y, z, density=..)",
     "ball": "lv.sphere(radius, density=..)",

@@ -43,4 +43,5 @@ NB_MODULE(_core, m)
     livens::python::add_solving(m);
     livens::python::add_results(m);
     livens::python::add_rest(m);
+    livens::python::add_states(m);
 }

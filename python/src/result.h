@@ -37,6 +37,7 @@ using Times = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::c
 void add_solving(nb::module_& m);
 void add_results(nb::module_& m);
 void add_rest(nb::module_& m);
+void add_states(nb::module_& m);
 /// The columns of drives_at(), and their units.
 std::map<std::string, std::string> drive_columns(const Result& r);
 /// Methods that sample a motion.

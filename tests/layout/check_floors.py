@@ -36,7 +36,7 @@ APART = {("diagnostics", "stepping")}
 # their users may see, and which may see them. Folders that are not named here stand beside each other.
 PARTS = {
     "multibody": ["joints", "loads"],
-    "dynamics": ["rows", "lanes", "instant", "start"],
+    "dynamics": ["rows", "lanes", "instant", "start", "coordinates"],
     "spacetime": ["march", "elements", "nodal", "mixed", "accuracy"],
     "io": ["results", "exports", "report", "scenario", "import"],
     "io/scenario": ["text", "schema", "bodies", "joints", "loads", "run"],

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From one place to another along the coordinates: theory.md, "States in coordinates". In a tree each
+// coordinate moves what is behind it along a screw that is fixed before it, so that one step of screws,
+// outermost first, goes the whole way; loops are led in small steps, each closed by Newton's iteration.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "livens/base/elementary.h"
+#include "livens/base/text.h"
+#include "livens/dynamics/coordinates/mechanism.h"
+#include "livens/dynamics/rows/rank.h"
+#include "livens/dynamics/rows/rows.h"
+#include "livens/dynamics/rows/twist.h"
+#include "livens/multibody/body.h"
+#include "livens/multibody/displacement.h"
+#include "livens/solvers/factors.h"
+
+namespace livens::inline dynamics_internal {
+
+namespace {
+
+using Of = GeneralisedCoordinate::Of;
+
+constexpr double way_step = 0.1;   // of a coordinate, rad or lengths of the model
+constexpr int way_halvings = 12;
+constexpr double rows_closed = 1e-9;      // |Phi| / scale
+constexpr double newton_settled = 1e-9;   // a step of Newton's after which the next is below rounding
+constexpr double most_corrected = 0.3;    // by Newton's iteration, of a step: more may be another branch
+// A way that ends as near as this where rows close to this, is at a dead centre.
+constexpr double turning_near = 1e-4, turning = 1e-6;
+constexpr double most_moved = 1e6;   // of a body by a coordinate: rad or lengths, by the same
+
+/// A body that goes along a screw: the twist of its reference point at `at`, times one.
+Displacement along_screw(const Vector3& at, const Vector3& velocity, const Vector3& turn)
+{
+    const double angle = norm(turn);
+    double first = 0.5, second = 1.0 / 6;   // (1 - cos a) / a^2, (a - sin a) / a^3
+    if (angle > 1e-2) {
+        const SineCosine half = sine_cosine(0.5 * angle), whole = sine_cosine(angle);
+        first = 2 * half.sine * half.sine / (angle * angle);
+        second = (angle - whole.sine) / (angle * angle * angle);
+    } else {
+        const double a = angle * angle;
+        first -= a * (1.0 / 24 - a * (1.0 / 720 - a / 40320));
+        second -= a * (1.0 / 120 - a * (1.0 / 5040 - a / 362880));
+    }
+    const Vector3 across = cross(turn, velocity);
+    const Vector3 shift = velocity + first * across + second * cross(turn, across);
+    const Matrix3 rotation = directors_from_rotation_vector(turn);
+    return {at + shift - rotation * at, rotation};
+}
+
+/// Coordinates with what moves most bodies first: outwards along a tree.
+struct Screw {
+    int rate = 0, n_rates = 1, n_moved = 0;
+};
+std::vector<Screw> screws_outwards(const Mechanism& mechanism, const DenseMatrix& by_rates)
+{
+    std::vector<Screw> screws;
+    int rate = 0;
+    for (const GeneralisedCoordinate& c : mechanism.coordinates) {
+        Screw screw{rate, c.n_rates(), 0};
+        rate += c.n_rates();
+        for (const BodyTable& body : mechanism.bodies) {
+            double size = 0;
+            for (int k = 0; k < screw.n_rates; ++k)
+                for (int i = 0; i < body.dofs; ++i)
+                    size = std::max(size, std::abs(by_rates(body.first + i, screw.rate + k)));
+            screw.n_moved += size > 1e-9 ? 1 : 0;
+        }
+        screws.push_back(screw);
+    }
+    std::ranges::stable_sort(screws, std::ranges::greater(), &Screw::n_moved);
+    return screws;
+}
+
+Configuration along_screws(const Mechanism& mechanism, const Placed& from, std::span<const double> way,
+                           double part)
+{
+    Configuration X = from.X;
+    const std::vector<Screw> screws = screws_outwards(mechanism, from.by_rates);
+    for (int b = 0; b < mechanism.model.n_bodies(); ++b) {
+        const BodyTable& body = mechanism.bodies[b];
+        const Vector3 at = from.X[b].column(0);
+        for (auto screw = screws.rbegin(); screw != screws.rend(); ++screw) {
+            Vector3 velocity{}, turn{};
+            for (int k = screw->rate; k < screw->rate + screw->n_rates; ++k)
+                for (int i = 0; i < body.dofs; ++i)
+                    (i < 3 ? velocity[i] : turn[i - 3]) += part * way[k] * from.by_rates(body.first + i, k);
+            if (velocity == Vector3{} && turn == Vector3{}) continue;
+            X[b] = along_screw(at, velocity, turn).of_configuration(X[b]);
+            if (body.dofs == 3) X[b] = configuration(X[b].column(0), Matrix3{});
+        }
+    }
+    return X;
+}
+
+void displace_bodies(const Mechanism& mechanism, std::span<const double> twists, Configuration& X)
+{
+    for (int b = 0; b < mechanism.model.n_bodies(); ++b) {
+        const BodyTable& body = mechanism.bodies[b];
+        double moved[6] = {0, 0, 0, 0, 0, 0}, change[12];
+        std::copy_n(twists.begin() + body.first, body.dofs, moved);
+        twist::displacement(moved, X[b].a, change);
+        for (int i = 0; i < (body.dofs == 6 ? 12 : 3); ++i) X[b].a[i] += change[i];
+        if (body.dofs == 3) continue;
+        const Matrix3 D = directors(X[b]);   // what rounding has added to it is taken off
+        X[b] = configuration(X[b].column(0), 0.5 * (D * (3.0 * identity<3>() - transpose(D) * D)));
+    }
+}
+
+/// Puts bodies onto the rows of joints and the numbers. Returns how far they moved; infinite where it does
+/// not close.
+double close_at(const Mechanism& mechanism, const std::vector<int>& rows, std::span<const double> numbers,
+                Configuration& X)
+{
+    constexpr double never = std::numeric_limits<double>::infinity();
+    constexpr int most = 8;
+    double moved = 0;
+    for (int i = 0; i < most; ++i) {
+        const CoordinateSystem system(mechanism, X, rows);
+        if (!system.is_regular()) return never;
+        const std::vector<double> values = joint_values(mechanism.model, X);
+        std::vector<double> wanted;
+        for (const int r : rows) wanted.push_back(-values[r]);
+        const std::vector<double> left = mechanism.way_to(X, numbers);
+        wanted.insert(wanted.end(), left.begin(), left.end());
+        const std::vector<double> twists = system.twists(wanted);
+        const double size = mechanism.size_of_twists(twists);
+        if (!(size < 10)) return never;
+        displace_bodies(mechanism, twists, X);
+        moved += size;
+        if (size <= newton_settled) return mechanism.open(X) <= rows_closed ? moved : never;
+    }
+    return never;
+}
+
+Complaint why_singular(const Mechanism& mechanism, int coordinate)
+{
+    const std::string name = coordinate < 0 ? "" : mechanism.coordinates[coordinate].name;
+    const std::string what =
+        coordinate < 0
+            ? "the joints hold less in this state than beside it: it is a singular position"
+            : "coordinate '" + name +
+                  "' does not tell how the mechanism moves on in this state, which is a dead centre "
+                  "of it";
+    return {"coordinates-singular",
+            coordinate < 0 ? "q" : "q[" + name + "]",
+            what,
+            "",
+            "",
+            "",
+            coordinate < 0
+                ? "give a state beside it"
+                : "give another coordinate of the same loop instead, such as that of the crank, or a "
+                  "state beside it"};
+}
+
+/// Twists by rates at a place that is closed, or why there is none.
+std::optional<Complaint> settle_at(const Mechanism& mechanism, Placed& at)
+{
+    std::vector<int> rows = row_rank(mechanism.model, at.X, all_rows(mechanism.model)).independent;
+    if (static_cast<int>(rows.size()) != mechanism.rank) return why_singular(mechanism, -1);
+    at.system = std::make_shared<const CoordinateSystem>(mechanism, at.X, std::move(rows));
+    if (!at.system->is_regular()) return why_singular(mechanism, mechanism.coordinates.empty() ? -1 : 0);
+    at.by_rates = at.system->twists_by_rates();
+    int rate = 0;
+    for (int i = 0; i < static_cast<int>(mechanism.coordinates.size()); ++i)
+        for (int k = 0; k < mechanism.coordinates[i].n_rates(); ++k, ++rate)
+            if (!(mechanism.size_of_twists(at.by_rates.column(rate)) * mechanism.unit_of(i) < most_moved))
+                return why_singular(mechanism, i);
+    return {};
+}
+
+void settle_or_throw(const Mechanism& mechanism, Placed& at)
+{
+    if (std::optional<Complaint> why = settle_at(mechanism, at)) throw InputError(std::move(*why));
+}
+
+/// The whole way at once, where screws lead there; else nothing.
+std::shared_ptr<Placed> led_at_once(const Mechanism& mechanism, const Placed& from,
+                                    std::span<const double> way, std::span<const double> numbers)
+{
+    auto there = std::make_shared<Placed>();
+    there->X = along_screws(mechanism, from, way, 1);
+    if (!(mechanism.open(there->X) <= rows_closed)) return nullptr;
+    if (!(close_at(mechanism, from.system->rows(), numbers, there->X) <= 1e-6)) return nullptr;
+    there->numbers.assign(numbers.begin(), numbers.end());
+    there->angles = from.angles;
+    if (!mechanism.loads.turns.empty()) {
+        double sum = 0;   // no angle of a load goes farther
+        for (const double one : way) sum += std::abs(one);
+        const int n = static_cast<int>(std::min(1e6, std::ceil(sum / 2)));
+        for (int i = 1; i < n; ++i)
+            mechanism.loads.turns.follow(along_screws(mechanism, from, way, static_cast<double>(i) / n),
+                                         there->angles);
+        mechanism.loads.turns.follow(there->X, there->angles);
+    }
+    return there;
+}
+
+/// One step along the screws, closed; nothing where that fails or leads elsewhere.
+std::shared_ptr<Placed> led_a_step(const Mechanism& mechanism, const Placed& from,
+                                   std::span<const double> way, std::vector<double> numbers)
+{
+    auto there = std::make_shared<Placed>();
+    there->X = along_screws(mechanism, from, way, 1);
+    std::vector<double> twists(static_cast<std::size_t>(mechanism.bodies.n_twists()), 0.0);
+    for (int k = 0; k < mechanism.n_rates; ++k) add_scaled(twists, way[k], from.by_rates.column(k));
+    const double foretold = mechanism.size_of_twists(twists);
+    const double corrected = close_at(mechanism, from.system->rows(), numbers, there->X);
+    if (!(foretold < 1 && corrected <= most_corrected * foretold + rows_closed)) return nullptr;
+    there->numbers = std::move(numbers);
+    there->angles = from.angles;
+    if (!mechanism.loads.turns.empty()) mechanism.loads.turns.follow(there->X, there->angles);
+    return there;
+}
+
+/// The coordinate by which something moves most.
+int farthest_moving(const Mechanism& mechanism, const Placed& at)
+{
+    int found = -1, rate = 0;
+    double largest = 0;
+    for (int i = 0; i < static_cast<int>(mechanism.coordinates.size()); ++i)
+        for (int k = 0; k < mechanism.coordinates[i].n_rates(); ++k, ++rate) {
+            const double size = mechanism.size_of_twists(at.by_rates.column(rate)) * mechanism.unit_of(i);
+            if (size > largest) largest = size, found = i;
+        }
+    return found;
+}
+
+/// As near as joints come to closing where the coordinates are as wanted.
+Configuration nearly_closed(const Mechanism& mechanism, const Placed& last, std::span<const double> numbers)
+{
+    constexpr double weight = 1e3;   // of a coordinate beside a row
+    Configuration X = last.X;
+    const std::vector<int> rows = all_rows(mechanism.model);
+    const int n = mechanism.bodies.n_twists(), m = static_cast<int>(rows.size()) + mechanism.n_rates;
+    for (int i = 0; i < 60; ++i) {
+        const CoordinateSystem system(mechanism, X, rows);
+        const std::vector<double> values = joint_values(mechanism.model, X),
+                                  left = mechanism.way_to(X, numbers);
+        DenseMatrix A = system.entries();
+        std::vector<double> b;
+        for (const int r : rows) b.push_back(-values[r] * system.scale(r));
+        for (int k = 0; k < mechanism.n_rates; ++k) {
+            const int row = static_cast<int>(rows.size()) + k;
+            b.push_back(weight * left[k] * system.scale(row));
+            for (int c = 0; c < n; ++c) A(row, c) *= weight;
+        }
+        DenseMatrix damped(m + n, n);   // steps of half a radian at most
+        damped.set_rows(0, A);
+        for (int c = 0; c < n; ++c) damped(m + c, c) = 1e-3;
+        b.resize(static_cast<std::size_t>(m + n), 0.0);
+        std::vector<double> twists = PivotedQR(damped).solve(b);
+        for (const BodyTable& body : mechanism.bodies)
+            for (int k = 3; k < body.dofs; ++k) twists[body.first + k] /= mechanism.length;
+        const double size = mechanism.size_of_twists(twists);
+        if (!std::isfinite(size)) break;
+        if (size > 0.2)
+            for (double& one : twists) one *= 0.2 / size;
+        displace_bodies(mechanism, twists, X);
+        if (size < 1e-10) break;
+    }
+    return X;
+}
+
+/// "crank.angle = 1.2, ..": of those that were to move.
+std::string where_it_ends(const Mechanism& mechanism, const Placed& last, std::span<const double> way)
+{
+    std::string where;
+    std::size_t number = 0, rate = 0;
+    for (const GeneralisedCoordinate& c : mechanism.coordinates) {
+        if (c.of != Of::turn && std::abs(way[rate]) > 0)
+            where += (where.empty() ? "" : ", ") + c.name + " = " + to_text(last.numbers[number], 6);
+        number += static_cast<std::size_t>(c.n_numbers());
+        rate += static_cast<std::size_t>(c.n_rates());
+    }
+    return where.empty() ? "a part of the way" : where;
+}
+
+Complaint why_open(const Mechanism& mechanism, const Placed& last, std::span<const double> numbers)
+{
+    int row = 0;
+    const double open = mechanism.open(nearly_closed(mechanism, last, numbers), &row);
+    const std::vector<double> way = mechanism.way(last.numbers, numbers);
+    const std::string where = "the mechanism can be led to " + where_it_ends(mechanism, last, way);
+    const std::string help = "give coordinates that the joints admit, or place the bodies nearer to them";
+    const int turning_back = farthest_moving(mechanism, last);
+    if (open <= turning && mechanism.size_of(way) < turning_near)
+        return why_singular(mechanism, turning_back);
+    if (open <= rows_closed)
+        return {"loop-open",
+                "q[" + mechanism.coordinates[turning_back].name + "]",
+                "no way along the joints leads to this state from where the bodies are placed",
+                "",
+                "",
+                where,
+                help};
+    return {"loop-open",
+            "joint[" + mechanism.model.joints()[mechanism.model.row_joint(row)].name + "]",
+            "the loop does not close: " + mechanism.model.row_name(row) + " stays open",
+            "violation " + to_text(open * mechanism.model.row(row).scale, 4),
+            "",
+            where,
+            help};
+}
+
+}   // namespace
+
+Placed placed_at_start(const Mechanism& mechanism)
+{
+    Placed placed{
+        mechanism.placed.X, mechanism.numbers, mechanism.loads.turns.begin(mechanism.placed), {}, {}};
+    if (!mechanism.loads.turns.empty()) mechanism.loads.turns.follow(placed.X, placed.angles);
+    settle_or_throw(mechanism, placed);
+    return placed;
+}
+
+std::shared_ptr<Placed> led_nearby(const Mechanism& mechanism, const Placed& from,
+                                   std::span<const double> numbers)
+{
+    const std::vector<double> way = mechanism.way(from.numbers, numbers);
+    std::shared_ptr<Placed> there = led_a_step(mechanism, from, way, {numbers.begin(), numbers.end()});
+    if (there != nullptr && settle_at(mechanism, *there)) return nullptr;
+    return there;
+}
+
+Placed lead(const Mechanism& mechanism, const Placed& from, std::span<const double> numbers)
+{
+    const std::vector<double> way = mechanism.way(from.numbers, numbers);
+    if (std::ranges::all_of(way, [](double one) { return one == 0; })) return from;
+    if (std::shared_ptr<Placed> there = led_at_once(mechanism, from, way, numbers)) {
+        settle_or_throw(mechanism, *there);
+        return *there;
+    }
+    const double whole = 1 / std::max(1.0, std::ceil(mechanism.size_of(way) / way_step));
+    double length = whole, done = 0;
+    Placed here = from;
+    std::optional<Complaint> why;
+    while (done < 1) {
+        const double next = std::min(1.0, done + length);
+        std::vector<double> part(way.size());
+        for (std::size_t k = 0; k < way.size(); ++k) part[k] = (next - done) * way[k];
+        std::vector<double> there = next == 1 ? std::vector<double>(numbers.begin(), numbers.end())
+                                              : mechanism.gone(from.numbers, way, next);
+        std::shared_ptr<Placed> led = led_a_step(mechanism, here, part, std::move(there));
+        if (led != nullptr) why = settle_at(mechanism, *led);   // one on the way is stepped over
+        if (led != nullptr && !why) {
+            here = std::move(*led);
+            done = next;
+            length = std::min(whole, 2 * length);
+            continue;
+        }
+        length /= 2;
+        if (length < std::ldexp(whole, -way_halvings))
+            throw InputError(why ? std::move(*why) : why_open(mechanism, here, numbers));
+    }
+    return here;
+}
+
+}   // namespace livens::inline dynamics_internal
