@@ -13,10 +13,12 @@ HEAD = '''# SPDX-License-Identifier: BSD-3-Clause
 """Generated from the schema of scenarios; see python/generate.py."""
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, Union
 
 from ._entries import Entry, Key
+from ._meshes import mesh_file
 from ._values import Matrix, Method, Number, Shape, Vector, open_keys, three
 
 if TYPE_CHECKING:
@@ -29,6 +31,9 @@ if TYPE_CHECKING:
 End: TypeAlias = "Union[str, Entry, tuple[Union[str, Entry], Vector]]"
 """A body by name or handle, or with a point of it: ``("rod", (0.5, 0, 0))``; or a named point."""
 '''
+MESH_FILE = ("A path from the model's folder on, or any other path: the file is read where it lies, and the result keeps what it "
+             "needs of it. STL, OBJ, PLY, DAE (Collada) and Gmsh MSH; others, such as glTF, where the package trimesh is "
+             "installed. Mesh coordinates are body coordinates.")
 WRITTEN = {FLAG: "bool", TRUTH: "bool", INTEGER: "int", NUMBER: "Number", TEXT: "str", NAMES: "Sequence[str | Entry]",
            NAMED_TEXTS: "Mapping[str, str]", ROW: "Vector", ROWS: "Matrix", TABLE: "Mapping[str, Any]",
            TABLES: "Sequence[Mapping[str, Any]]"}
@@ -305,6 +310,9 @@ class Writer:
                 value = "True"
             else:
                 parameters, docs, value = [f"value: {written(key)}"], [("value", meaning(key))], "value"
+                if key["name"] == "mesh":   # a file that the caller names may lie anywhere
+                    parameters = ["file: str | os.PathLike[str]"]
+                    docs, value = [("file", MESH_FILE)], "mesh_file(file)"
             more = (beside if key["form"] == TEXT else []) + (weighing if density else [])
             docs += [(name_of(k), meaning(k)) for k in more]
             self.shape_names.append(name)

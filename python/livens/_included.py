@@ -75,16 +75,16 @@ def has_point(root: Mapping[str, Any], name: str) -> bool:
 
 
 def files_of(tree: Any) -> list[str]:
-    """Paths of all files that a tree names: meshes, and what it includes."""
+    """Paths of all files below its folder that a tree names: meshes, and what it includes."""
     items = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, (list, tuple)) else ()
-    return [path for key, item in items
+    return [path for key, item in items if not isinstance(item, MeshFile)
             for path in ([item] if key in ("mesh", "file") and isinstance(item, str) else files_of(item))]
 
 
 def _moved_files(tree: Any, folder: str) -> None:
     """Paths that began elsewhere begin there."""
     for key, item in tree.items():
-        if key in ("mesh", "file") and isinstance(item, str):
+        if key in ("mesh", "file") and isinstance(item, str) and not isinstance(item, MeshFile):
             tree[key] = f"{folder}/{item}"
         for inside in item if isinstance(item, list) else [item]:
             if isinstance(inside, dict):

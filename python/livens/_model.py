@@ -2,6 +2,7 @@
 """The model: a scenario's tree that is edited by name."""
 from __future__ import annotations
 
+import errno
 import os
 import warnings
 from collections.abc import Callable, Mapping
@@ -15,6 +16,7 @@ from ._entries import Entry, Names, Section, default_name, unknown_name
 from ._errors import Diagnostic, SlowWarning, SolveWarning, fault, file_name, make_way, stack_level, user_place
 from ._generated import Body, Drive, Joint, Load, Point, Sensor
 from ._included import Added, as_part, files_of
+from ._meshes import MeshFile, named_meshes
 from ._other_names import of_model
 from ._parameters import Parameters
 from ._places import some_time
@@ -24,6 +26,16 @@ from ._tree import KINDS, Table, frozen, toml
 
 if TYPE_CHECKING:
     from ._values import Matrix, Vector
+
+
+def _put_beside(name: str, mesh: MeshFile) -> None:
+    """The file of a mesh, beside that of a scenario."""
+    target = os.path.join(os.path.dirname(name), mesh)
+    with open(mesh.path, "rb") as stream:
+        content = stream.read()
+    if os.path.exists(target) and not _holds(target, content):
+        raise FileExistsError(errno.EEXIST, "a mesh of the model would replace a file of other content", target)
+    _core.write_file(target, content)
 
 
 def _holds(name: str, content: bytes) -> bool:
@@ -253,7 +265,7 @@ class Model(Tree):
         generated. ``load(text=m.to_toml()) == m``.
 
         Args:
-            file: Its name.
+            file: Its name. Meshes from other folders are copied beside it.
             force: Whether to replace an existing file with other content; never a mesh of the model.
 
         Raises:
@@ -265,7 +277,11 @@ class Model(Tree):
         if file is not None:
             name = file_name(file)
             if not _holds(name, text.encode()):
-                make_way(name, "scenario", [os.path.join(self._folder, mesh) for mesh in files_of(self._root)], force)
+                meshes = list(named_meshes(self._root))
+                make_way(name, "scenario", [os.path.join(self._folder, mesh) for mesh in files_of(self._root)]
+                         + [mesh.path for mesh in meshes], force)
+                for mesh in meshes:
+                    _put_beside(name, mesh)
                 _core.write_file(name, text.encode())
         return text
 

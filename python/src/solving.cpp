@@ -36,9 +36,11 @@ nb::object shared(std::optional<Scenario>& scenario)
     return nb::cast(std::make_shared<Scenario>(std::move(*scenario)));
 }
 
-/// (scenario or None, diagnostics).
 /// Of meshes; empty: where Python is.
-MeshSource meshes_in(const std::string& folder) { return {folder.empty() ? "." : folder}; }
+MeshSource meshes_in(const std::string& folder, std::map<std::string, std::filesystem::path> named = {})
+{
+    return {folder.empty() ? "." : folder, {}, std::move(named)};
+}
 
 /// Work that nobody waits for any more.
 std::atomic<int> n_left = 0;
@@ -102,8 +104,9 @@ nb::tuple build_tree(const nb::dict& root, const std::string& text, const std::s
                      bool model_alone)
 {
     TreeReader reader;
-    const auto read = [tree = std::make_shared<const Node>(reader.read(root)), text, folder, model_alone] {
-        return read_tree(*tree, text, meshes_in(folder), model_alone ? TreePart::model : TreePart::whole);
+    const auto tree = std::make_shared<const Node>(reader.read(root));
+    const auto read = [tree, text, meshes = meshes_in(folder, reader.named()), model_alone] {
+        return read_tree(*tree, text, meshes, model_alone ? TreePart::model : TreePart::whole);
     };
     ScenarioResult result;
     if (!folder.empty() || may_have_meshes(text)) {
@@ -202,7 +205,8 @@ Result solve_one(const Shared& scenario, nb::object progress, double most_bytes)
 /// What became of one of many.
 struct Variant {
     Node tree;
-    std::string text, folder;
+    std::string text;
+    MeshSource meshes;
     std::vector<Location> locations;
     std::vector<Diagnostic> diagnostics{};
     std::optional<Result> result{};
@@ -213,7 +217,7 @@ struct Variant {
 void solve_variant(Variant& variant, double most_bytes, std::atomic<bool>& is_stopped)
 {
     try {
-        ScenarioResult read = read_tree(variant.tree, variant.text, meshes_in(variant.folder));
+        ScenarioResult read = read_tree(variant.tree, variant.text, variant.meshes);
         variant.tree = {};
         variant.diagnostics = std::move(read.diagnostics);
         if (!read.scenario || is_stopped) return;
@@ -252,7 +256,8 @@ nb::list solve_many(const nb::list& trees, int n_threads, nb::object progress, d
         TreeReader reader;
         Node tree = reader.read(nb::cast<nb::dict>(triple[0]));
         variants.push_back({std::move(tree), nb::cast<std::string>(triple[1]),
-                            nb::cast<std::string>(triple[2]), reader.locations()});
+                            meshes_in(nb::cast<std::string>(triple[2]), reader.named()),
+                            reader.locations()});
     }
     const int n = static_cast<int>(variants.size()),
               threads = std::min(threads_for(n_threads), std::max(n, 1));

@@ -331,7 +331,7 @@ Node TreeReader::table(nb::dict object, const Location& location, int depth)
 }
 
 /// Numbers, truths and texts. False for others.
-bool TreeReader::read_scalar(nb::handle object, const Location& location, Node& node) const
+bool TreeReader::read_scalar(nb::handle object, const Location& location, Node& node)
 {
     if (PyBool_Check(object.ptr())) {
         node.kind = Node::Kind::truth;
@@ -351,6 +351,8 @@ bool TreeReader::read_scalar(nb::handle object, const Location& location, Node& 
         node.kind = Node::Kind::text;
         node.content = std::make_unique<NodeContent>();
         node.content->text = utf8(object, location);
+        if (PyUnicode_CheckExact(object.ptr()) == 0 && nb::hasattr(object, "path"))
+            named_[node.content->text] = nb::cast<std::string>(nb::str(object.attr("path")));
     } else {
         return false;
     }

@@ -2,6 +2,8 @@
 // Between Python's containers and the tree that the reader of scenarios takes.
 #pragma once
 
+#include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -30,16 +32,19 @@ public:
     Node read(nb::dict root);
 
     const std::vector<Location>& locations() const { return locations_; }
+    /// Files by the names that meshes have: of texts with an attribute `path` (MeshFile of _meshes.py).
+    const std::map<std::string, std::filesystem::path>& named() const { return named_; }
 
 private:
     Node value(nb::handle object, const Location& location, int depth);
     Node table(nb::dict object, const Location& location, int depth);
     Node array(nb::handle object, const Location& location, int depth);
-    bool read_scalar(nb::handle object, const Location& location, Node& node) const;
+    bool read_scalar(nb::handle object, const Location& location, Node& node);
     void count(const Location& location);
     SourceLocation place(const Location& location);
 
     std::vector<Location> locations_{{}};   // 0: nothing is known
+    std::map<std::string, std::filesystem::path> named_;
     int n_values_ = 0;
 };
 

@@ -310,7 +310,9 @@ std::filesystem::path find_file(const MeshSource& source, const std::string& pat
 
 Mesh MeshStore::open(const std::string& path)
 {
-    const std::filesystem::path file = find_file(source_, path, "mesh");
+    const auto named = source_.named.find(path);
+    const std::filesystem::path file =
+        named != source_.named.end() ? named->second : find_file(source_, path, "mesh");
     files_.push_back(file);
     if (is_collada(path)) return read_collada(read_mesh_bytes(file, path).text(), path);
     return read_mesh_file(file, path);
