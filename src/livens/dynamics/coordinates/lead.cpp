@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -27,7 +28,9 @@ using Of = GeneralisedCoordinate::Of;
 
 constexpr double way_step = 0.1;   // of a coordinate, rad or lengths of the model
 constexpr int way_halvings = 12;
-constexpr double rows_closed = 1e-9;      // |Phi| / scale
+constexpr double way_longest = 2000 * std::numbers::pi;   // likewise: some 63,000 steps
+constexpr double rows_closed = 1e-9;                      // |Phi| / scale
+constexpr double screws_closed = 1e-6;    // likewise where screws lead: far ways carry rounding along
 constexpr double newton_settled = 1e-9;   // a step of Newton's after which the next is below rounding
 constexpr double most_corrected = 0.3;    // by Newton's iteration, of a step: more may be another branch
 // A way that ends as near as this where rows close to this, is at a dead centre.
@@ -187,8 +190,8 @@ std::shared_ptr<Placed> led_at_once(const Mechanism& mechanism, const Placed& fr
 {
     auto there = std::make_shared<Placed>();
     there->X = along_screws(mechanism, from, way, 1);
-    if (!(mechanism.open(there->X) <= rows_closed)) return nullptr;
-    if (!(close_at(mechanism, from.system->rows(), numbers, there->X) <= 1e-6)) return nullptr;
+    if (!(mechanism.open(there->X) <= screws_closed)) return nullptr;
+    if (!(close_at(mechanism, from.system->rows(), numbers, there->X) <= screws_closed)) return nullptr;
     there->numbers.assign(numbers.begin(), numbers.end());
     there->angles = from.angles;
     if (!mechanism.loads.turns.empty()) {
@@ -330,24 +333,48 @@ std::shared_ptr<Placed> led_nearby(const Mechanism& mechanism, const Placed& fro
     return there;
 }
 
-Placed lead(const Mechanism& mechanism, const Placed& from, std::span<const double> numbers)
+namespace {
+
+/// The numbers of `to` for bodies, of `from` for joints.
+std::vector<double> of_bodies(const Mechanism& mechanism, std::span<const double> from,
+                              std::span<const double> to)
 {
-    const std::vector<double> way = mechanism.way(from.numbers, numbers);
-    if (std::ranges::all_of(way, [](double one) { return one == 0; })) return from;
-    if (std::shared_ptr<Placed> there = led_at_once(mechanism, from, way, numbers)) {
-        settle_or_throw(mechanism, *there);
-        return *there;
-    }
+    std::vector<double> numbers(from.begin(), from.end());
+    std::size_t k = 0;
+    for (const GeneralisedCoordinate& c : mechanism.coordinates)
+        for (int i = 0; i < c.n_numbers(); ++i, ++k)
+            if (c.of != Of::joint) numbers[k] = to[k];
+    return numbers;
+}
+
+void refuse_far(const Mechanism& mechanism, std::span<const double> way)
+{
+    int rate = 0;
+    for (int i = 0; i < static_cast<int>(mechanism.coordinates.size()); ++i)
+        for (int k = 0; k < mechanism.coordinates[i].n_rates(); ++k, ++rate)
+            if (!(std::abs(way[rate]) <= way_longest * mechanism.unit_of(i)))
+                throw InputError(
+                    {"coordinate-value", "q[" + mechanism.coordinates[i].name + "]",
+                     "coordinate '" + mechanism.coordinates[i].name +
+                         "' is too far from where the bodies are placed for a loop to be led there",
+                     to_text(way[rate], 3), "1000 turns or 6000 lengths of the model", "",
+                     "place the bodies nearer to the state, or leave whole turns out"});
+}
+
+/// In steps, each as long as the rows close by it and little is corrected.
+Placed led_in_steps(const Mechanism& mechanism, Placed here, std::span<const double> numbers)
+{
+    const std::vector<double> from = here.numbers, way = mechanism.way(from, numbers);
+    refuse_far(mechanism, way);
     const double whole = 1 / std::max(1.0, std::ceil(mechanism.size_of(way) / way_step));
     double length = whole, done = 0;
-    Placed here = from;
     std::optional<Complaint> why;
     while (done < 1) {
         const double next = std::min(1.0, done + length);
         std::vector<double> part(way.size());
         for (std::size_t k = 0; k < way.size(); ++k) part[k] = (next - done) * way[k];
-        std::vector<double> there = next == 1 ? std::vector<double>(numbers.begin(), numbers.end())
-                                              : mechanism.gone(from.numbers, way, next);
+        std::vector<double> there =
+            next == 1 ? std::vector<double>(numbers.begin(), numbers.end()) : mechanism.gone(from, way, next);
         std::shared_ptr<Placed> led = led_a_step(mechanism, here, part, std::move(there));
         if (led != nullptr) why = settle_at(mechanism, *led);   // one on the way is stepped over
         if (led != nullptr && !why) {
@@ -361,6 +388,23 @@ Placed lead(const Mechanism& mechanism, const Placed& from, std::span<const doub
             throw InputError(why ? std::move(*why) : why_open(mechanism, here, numbers));
     }
     return here;
+}
+
+}   // namespace
+
+Placed lead(const Mechanism& mechanism, const Placed& from, std::span<const double> numbers)
+{
+    const std::vector<double> way = mechanism.way(from.numbers, numbers);
+    if (std::ranges::all_of(way, [](double one) { return one == 0; })) return from;
+    if (std::shared_ptr<Placed> there = led_at_once(mechanism, from, way, numbers)) {
+        settle_or_throw(mechanism, *there);
+        return *there;
+    }
+    // Bodies that joints leave free take all that hangs on them along, however far.
+    const std::vector<double> first = of_bodies(mechanism, from.numbers, numbers);
+    std::shared_ptr<Placed> moved = led_at_once(mechanism, from, mechanism.way(from.numbers, first), first);
+    if (moved == nullptr || settle_at(mechanism, *moved)) return led_in_steps(mechanism, from, numbers);
+    return led_in_steps(mechanism, std::move(*moved), numbers);
 }
 
 }   // namespace livens::inline dynamics_internal
