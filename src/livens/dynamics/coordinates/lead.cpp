@@ -37,71 +37,6 @@ constexpr double most_corrected = 0.3;    // by Newton's iteration, of a step: m
 constexpr double turning_near = 1e-4, turning = 1e-6;
 constexpr double most_moved = 1e6;   // of a body by a coordinate: rad or lengths, by the same
 
-/// A body that goes along a screw: the twist of its reference point at `at`, times one.
-Displacement along_screw(const Vector3& at, const Vector3& velocity, const Vector3& turn)
-{
-    const double angle = norm(turn);
-    double first = 0.5, second = 1.0 / 6;   // (1 - cos a) / a^2, (a - sin a) / a^3
-    if (angle > 1e-2) {
-        const SineCosine half = sine_cosine(0.5 * angle), whole = sine_cosine(angle);
-        first = 2 * half.sine * half.sine / (angle * angle);
-        second = (angle - whole.sine) / (angle * angle * angle);
-    } else {
-        const double a = angle * angle;
-        first -= a * (1.0 / 24 - a * (1.0 / 720 - a / 40320));
-        second -= a * (1.0 / 120 - a * (1.0 / 5040 - a / 362880));
-    }
-    const Vector3 across = cross(turn, velocity);
-    const Vector3 shift = velocity + first * across + second * cross(turn, across);
-    const Matrix3 rotation = directors_from_rotation_vector(turn);
-    return {at + shift - rotation * at, rotation};
-}
-
-/// Coordinates with what moves most bodies first: outwards along a tree.
-struct Screw {
-    int rate = 0, n_rates = 1, n_moved = 0;
-};
-std::vector<Screw> screws_outwards(const Mechanism& mechanism, const DenseMatrix& by_rates)
-{
-    std::vector<Screw> screws;
-    int rate = 0;
-    for (const GeneralisedCoordinate& c : mechanism.coordinates) {
-        Screw screw{rate, c.n_rates(), 0};
-        rate += c.n_rates();
-        for (const BodyTable& body : mechanism.bodies) {
-            double size = 0;
-            for (int k = 0; k < screw.n_rates; ++k)
-                for (int i = 0; i < body.dofs; ++i)
-                    size = std::max(size, std::abs(by_rates(body.first + i, screw.rate + k)));
-            screw.n_moved += size > 1e-9 ? 1 : 0;
-        }
-        screws.push_back(screw);
-    }
-    std::ranges::stable_sort(screws, std::ranges::greater(), &Screw::n_moved);
-    return screws;
-}
-
-Configuration along_screws(const Mechanism& mechanism, const Placed& from, std::span<const double> way,
-                           double part)
-{
-    Configuration X = from.X;
-    const std::vector<Screw> screws = screws_outwards(mechanism, from.by_rates);
-    for (int b = 0; b < mechanism.model.n_bodies(); ++b) {
-        const BodyTable& body = mechanism.bodies[b];
-        const Vector3 at = from.X[b].column(0);
-        for (auto screw = screws.rbegin(); screw != screws.rend(); ++screw) {
-            Vector3 velocity{}, turn{};
-            for (int k = screw->rate; k < screw->rate + screw->n_rates; ++k)
-                for (int i = 0; i < body.dofs; ++i)
-                    (i < 3 ? velocity[i] : turn[i - 3]) += part * way[k] * from.by_rates(body.first + i, k);
-            if (velocity == Vector3{} && turn == Vector3{}) continue;
-            X[b] = along_screw(at, velocity, turn).of_configuration(X[b]);
-            if (body.dofs == 3) X[b] = configuration(X[b].column(0), Matrix3{});
-        }
-    }
-    return X;
-}
-
 void displace_bodies(const Mechanism& mechanism, std::span<const double> twists, Configuration& X)
 {
     for (int b = 0; b < mechanism.model.n_bodies(); ++b) {
@@ -184,6 +119,17 @@ void settle_or_throw(const Mechanism& mechanism, Placed& at)
     if (std::optional<Complaint> why = settle_at(mechanism, at)) throw InputError(std::move(*why));
 }
 
+/// What counts its turns goes on to where the bodies are, each angle the shorter way.
+void follow_turns(const Mechanism& mechanism, const Configuration& X, Placed& at)
+{
+    if (!mechanism.loads.turns.empty()) mechanism.loads.turns.follow(X, at.angles);
+    for (std::size_t i = 0; i < at.counted.size(); ++i) {
+        const JointCoordinate& q = mechanism.counted[i].coordinate;
+        const double value = mechanism.counted[i].at_stated + coordinate_change(q, mechanism.stated, X);
+        at.counted[i] = q.is_angle() ? turned_to(value, at.counted[i]) : value;
+    }
+}
+
 /// The whole way at once, where screws lead there; else nothing.
 std::shared_ptr<Placed> led_at_once(const Mechanism& mechanism, const Placed& from,
                                     std::span<const double> way, std::span<const double> numbers)
@@ -194,15 +140,12 @@ std::shared_ptr<Placed> led_at_once(const Mechanism& mechanism, const Placed& fr
     if (!(close_at(mechanism, from.system->rows(), numbers, there->X) <= screws_closed)) return nullptr;
     there->numbers.assign(numbers.begin(), numbers.end());
     there->angles = from.angles;
-    if (!mechanism.loads.turns.empty()) {
-        double sum = 0;   // no angle of a load goes farther
-        for (const double one : way) sum += std::abs(one);
-        const int n = static_cast<int>(std::min(1e6, std::ceil(sum / 2)));
-        for (int i = 1; i < n; ++i)
-            mechanism.loads.turns.follow(along_screws(mechanism, from, way, static_cast<double>(i) / n),
-                                         there->angles);
-        mechanism.loads.turns.follow(there->X, there->angles);
-    }
+    there->counted = from.counted;
+    const double farthest = mechanism.farthest_turn(from.by_rates, way);
+    const int n = static_cast<int>(std::min(1e5, std::ceil(farthest / 2)));
+    for (int i = 1; i < n; ++i)
+        follow_turns(mechanism, along_screws(mechanism, from, way, static_cast<double>(i) / n), *there);
+    follow_turns(mechanism, there->X, *there);
     return there;
 }
 
@@ -219,7 +162,8 @@ std::shared_ptr<Placed> led_a_step(const Mechanism& mechanism, const Placed& fro
     if (!(foretold < 1 && corrected <= most_corrected * foretold + rows_closed)) return nullptr;
     there->numbers = std::move(numbers);
     there->angles = from.angles;
-    if (!mechanism.loads.turns.empty()) mechanism.loads.turns.follow(there->X, there->angles);
+    there->counted = from.counted;
+    follow_turns(mechanism, there->X, *there);
     return there;
 }
 
@@ -317,9 +261,12 @@ Complaint why_open(const Mechanism& mechanism, const Placed& last, std::span<con
 
 Placed placed_at_start(const Mechanism& mechanism)
 {
-    Placed placed{
-        mechanism.placed.X, mechanism.numbers, mechanism.loads.turns.begin(mechanism.placed), {}, {}};
-    if (!mechanism.loads.turns.empty()) mechanism.loads.turns.follow(placed.X, placed.angles);
+    Placed placed;
+    placed.X = mechanism.placed.X;
+    placed.numbers = mechanism.numbers;
+    placed.angles = mechanism.loads.turns.begin(mechanism.placed);
+    for (const NamedCoordinate& q : mechanism.counted) placed.counted.push_back(q.at_stated);
+    follow_turns(mechanism, placed.X, placed);
     settle_or_throw(mechanism, placed);
     return placed;
 }
@@ -357,7 +304,7 @@ void refuse_far(const Mechanism& mechanism, std::span<const double> way)
                     {"coordinate-value", "q[" + mechanism.coordinates[i].name + "]",
                      "coordinate '" + mechanism.coordinates[i].name +
                          "' is too far from where the bodies are placed for a loop to be led there",
-                     to_text(way[rate], 3), "1000 turns or 6000 lengths of the model", "",
+                     to_text(way[rate], 3), "1000 turns or 6000 model lengths", "",
                      "place the bodies nearer to the state, or leave whole turns out"});
 }
 
