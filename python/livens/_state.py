@@ -143,11 +143,11 @@ class MechanismState:
     @property
     def joints(self) -> Parts[PlacedJoint]:
         """All joints that act, by name, without drives."""
-        found = self._state.joints(self.coordinates._found)
+        found = self._state.joints
 
         def made(i: int) -> PlacedJoint:
             values = {}
-            for name, value, rate in found[i][1]:
+            for name, value, rate, _ in found[i][1]:
                 values[name], values[f"{name}_rate"] = value, rate
             return PlacedJoint(found[i][0], values)
         return Parts("joint", [name for name, _ in found], made)
@@ -264,9 +264,9 @@ class MechanismState:
             if not np.isnan(body.quaternion[0]):
                 kept.update(quaternion=tuple(body.quaternion.tolist()), angular_velocity=tuple(body.angular_velocity.tolist()))
             return kept
-        turned = tuple({"joint": name.rpartition(".")[0], "coordinate": "angle", "value": float(value)}
-                       for name, value, placed in zip(self.coordinates.q, self.q, self.coordinates.placed)
-                       if name.endswith(".angle") and abs(value - placed) > 3)   # bodies do not tell turns
+        turned = tuple({"joint": joint, "coordinate": "angle", "value": value}
+                       for joint, values in self._state.joints for word, value, _, placed in values
+                       if word == "angle" and abs(value - placed) > 3)   # bodies do not tell turns
         return Condition("state", {name: keys(body) for name, body in self.bodies.items()}, turned)
 
     def __repr__(self) -> str:

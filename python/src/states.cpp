@@ -100,25 +100,21 @@ nb::object bodies_of(const GeneralisedState& at)
     return array(std::move(all), {at.state().X.size(), 13});
 }
 
-/// [(joint, [(coordinate, value, rate), ..]), ..]: angles with their turns where they are independent.
-nb::list joints_of(const GeneralisedState& at, const GeneralisedCoordinates& coordinates)
+/// [(joint, [(coordinate, value, rate, as it is placed), ..]), ..], angles with their turns.
+nb::list joints_of(const GeneralisedState& at)
 {
     const Model& model = at.model();
-    const std::vector<Matrix34> stated = model.start().X;
+    const std::vector<std::vector<double>> counted = at.coordinates();
     nb::list all;
-    for (const Joint& joint : model.joints()) {
+    for (std::size_t j = 0; j < counted.size(); ++j) {
         nb::list values;
-        for (const NamedCoordinate& q : joint.coordinates) {
-            double value = q.at_stated + coordinate_change(q.coordinate, stated, at.state().X);
-            std::size_t k = 0;
-            for (const GeneralisedCoordinate& c : coordinates.list()) {
-                if (c.of == Of::joint && c.name == joint.name + "." + q.name) value = at.numbers()[k];
-                k += static_cast<std::size_t>(c.n_numbers());
-            }
-            values.append(
-                nb::make_tuple(q.name, value, coordinate_rate(q.coordinate, at.state().X, at.state().V)));
+        for (std::size_t k = 0; k < counted[j].size(); ++k) {
+            const NamedCoordinate& q = model.joints()[j].coordinates[k];
+            values.append(nb::make_tuple(q.name, counted[j][k],
+                                         coordinate_rate(q.coordinate, at.state().X, at.state().V),
+                                         q.at_stated));
         }
-        all.append(nb::make_tuple(joint.name, values));
+        all.append(nb::make_tuple(model.joints()[j].name, values));
     }
     return all;
 }
@@ -182,7 +178,7 @@ void add_states(nb::module_& m)
         .def_prop_ro("v", [](const GeneralisedState& at) { return vector_of(Numbers(at.rates())); })
         .def_prop_ro("t", [](const GeneralisedState& at) { return at.state().t; })
         .def_prop_ro("bodies", &bodies_of)
-        .def("joints", &joints_of, nb::arg("coordinates"))
+        .def_prop_ro("joints", &joints_of)
         .def_prop_ro("mass_matrix",
                      [](const GeneralisedState& at) {
                          const std::size_t n = at.rates().size();

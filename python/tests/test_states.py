@@ -270,6 +270,23 @@ def test_a_motion_starts_at_a_state_with_its_turns() -> None:
     assert motion.energy[0] == pytest.approx(state.energy, rel=1e-12)
 
 
+def test_turns_of_what_follows_are_counted() -> None:
+    m = lv.Model("gears")
+    m.add_body("small", lv.cylinder(0.1, 0.05, mass=1))
+    m.add_body("large", lv.cylinder(0.2, 0.05, mass=2), position=(0.3, 0, 0))
+    m.add_revolute("a", "world", "small", at=(0, 0, 0), axis=(0, 0, 1))
+    m.add_revolute("b", "world", "large", at=(0.3, 0, 0), axis=(0, 0, 1))
+    m.add_gear("mesh", joints=["a", "b"], ratio=-0.5)
+    state = m.at({"a.angle": 50.0})
+    assert state["b"].angle == pytest.approx(-25, abs=1e-12)
+    assert m.at({"b.angle": -25.0})["a"].angle == pytest.approx(50, abs=1e-12)
+    assert lv.solve(m, 0.1, start=state.state)["b"].angle[0] == pytest.approx(-25, abs=1e-12)
+    linkage = four_bar()
+    turns = linkage.at({"A.angle": 0.5 + 4 * np.pi}), linkage.at({"A.angle": 0.5})
+    assert turns[0]["D"].angle == pytest.approx(turns[1]["D"].angle, abs=1e-9)   # it swings
+    assert turns[0]["B"].angle == pytest.approx(turns[1]["B"].angle - 4 * np.pi, abs=1e-9)
+
+
 def test_state_matrices_foretell_a_small_change() -> None:
     m = robot()
     state = m.at(STATED, MOVING)

@@ -1364,3 +1364,28 @@ livens_mutant(NAME lossless_series
               NEW [[off = 0 * std::abs(shown - truth[c]);]]
               TESTS_OF unit_io
               MUST_FAIL Report.SeriesSayWhatTheyLose)
+
+# Centripetal parts of X'' left out of what velocities do to rows: right at rest.
+livens_mutant(NAME state_drift
+              FILE dynamics/coordinates/generalised_state.cpp
+              OLD [[curvature += dot(gradient.by]]
+              NEW [[curvature += 0 * dot(gradient.by]]
+              TESTS_OF unit_dynamics
+              MUST_FAIL GeneralisedState.AcceleratesBodiesAsTheEngineDoes
+                        GeneralisedState.JacobianAndDriftAreThoseOfAPointThatMoves)
+
+# Slopes of accelerations without those of loads: right where nothing springs.
+livens_mutant(NAME state_slopes_of_loads
+              FILE dynamics/coordinates/slopes.cpp
+              OLD [[forces[i] = of_loads[i] - forces[i];]]
+              NEW [[forces[i] = 0 * of_loads[i] - forces[i];]]
+              TESTS_OF unit_dynamics
+              MUST_FAIL GeneralisedState.SlopesAreThoseOfTheAccelerations)
+
+# A dead centre taken for a loop that does not close.
+livens_mutant(NAME state_dead_centre
+              FILE dynamics/coordinates/lead.cpp
+              OLD [[if (open <= turning && mechanism.size_of(way) < turning_near)]]
+              NEW [[if (false && open <= turning && mechanism.size_of(way) < turning_near)]]
+              TESTS_OF unit_dynamics
+              MUST_FAIL GeneralisedState.NamesADeadCentre)

@@ -317,6 +317,30 @@ struct Loop : Linkage {
     }
 };
 
+/// A loop in space that nothing holds goes where its first body goes, however far, and then along its joints.
+TEST(GeneralisedState, LoopsThatFloatAreTakenAlong)
+{
+    Loop loop;
+    loop.hinge_named("E", 2, loop.add_link({1, 0, -0.3}), {1, 0, 0});
+    Model floating(loop.model.gravity());
+    for (const Body& body : loop.model.bodies()) floating.add_body(body);
+    for (const Joint& joint : loop.model.joints())
+        if (joint.first != world) floating.add_joint(joint);
+    floating.add_joint(revolute("F", 3, 0, joint_frame(loop.X(3), loop.X(0), {0, 0, 0}, {0, 1, 0})));
+    const GeneralisedCoordinates coordinates = coordinates_of(floating);
+    ASSERT_EQ(coordinates.n_rates(), 7);
+    Numbers q = coordinates.placed();
+    q[0] += 1e4;
+    q[7] -= 0.4;
+    std::swap(q[3], q[4]);
+    const GeneralisedState state = coordinates.at(q, Numbers{1, 2, 3, 4, 5, 6, 7});
+    for (const double phi : joint_values(floating, state.state().X)) EXPECT_NEAR(phi, 0, 1e-9);
+    EXPECT_NEAR(state.state().X[0](0, 0), q[0], 1e-9);
+    EXPECT_NEAR(0.5 * product(state.rates(), times(state.mass_matrix(), state.rates())) /
+                    state.kinetic_energy(),
+                1, 1e-9);
+}
+
 std::string code_of(const std::function<void()>& act)
 {
     try {
@@ -360,6 +384,7 @@ TEST(GeneralisedState, RefusesWhatIsNoState)
               "coordinate-twice q[A.angle]");
     EXPECT_EQ(code_of([&] { coordinates_of(loop.model, {"A.angel"}); }), "coordinate-unknown q[A.angel]");
     EXPECT_EQ(code_of([&] { rocker.at(Numbers{2}); }).substr(0, 9), "loop-open");
+    EXPECT_EQ(code_of([&] { crank.at(Numbers{1e300}); }), "coordinate-value q[A.angle]");
     EXPECT_EQ(code_of([&] { rocker.at(Numbers{0.1}); }), "none");
 }
 

@@ -244,6 +244,18 @@ GeneralisedState::GeneralisedState(std::shared_ptr<const Mechanism> mechanism, P
 const State& GeneralisedState::state() const { return parts_->state; }
 const std::vector<double>& GeneralisedState::numbers() const { return parts_->placed.numbers; }
 const std::vector<double>& GeneralisedState::rates() const { return parts_->rates; }
+std::vector<std::vector<double>> GeneralisedState::coordinates() const
+{
+    std::vector<std::vector<double>> all;
+    auto next = parts_->placed.counted.begin();
+    for (const Joint& joint : model().joints()) {
+        const auto end = next + static_cast<std::ptrdiff_t>(joint.coordinates.size());
+        all.emplace_back(next, end);
+        next = end;
+    }
+    return all;
+}
+
 const Model& GeneralisedState::model() const { return parts_->mechanism->model; }
 
 std::vector<double> GeneralisedState::mass_matrix() const { return parts_->mass().a; }   // symmetric

@@ -93,6 +93,8 @@ public:
     const State& state() const;                   ///< bodies of the model: X, V, time, turns of loads
     const std::vector<double>& numbers() const;   ///< angles with their turns
     const std::vector<double>& rates() const;
+    /// Of each joint of model() all coordinates, as it counts them: turns included.
+    std::vector<std::vector<double>> coordinates() const;
     const Model& model() const;   ///< of the joints that act, without drives
 
     /// M, n x n: symmetric, positive definite.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -27,77 +28,14 @@ using Of = GeneralisedCoordinate::Of;
 
 constexpr double way_step = 0.1;   // of a coordinate, rad or lengths of the model
 constexpr int way_halvings = 12;
-constexpr double rows_closed = 1e-9;      // |Phi| / scale
+constexpr double way_longest = 2000 * std::numbers::pi;   // likewise: some 63,000 steps
+constexpr double rows_closed = 1e-9;                      // |Phi| / scale
+constexpr double screws_closed = 1e-6;    // likewise where screws lead: far ways carry rounding along
 constexpr double newton_settled = 1e-9;   // a step of Newton's after which the next is below rounding
 constexpr double most_corrected = 0.3;    // by Newton's iteration, of a step: more may be another branch
 // A way that ends as near as this where rows close to this, is at a dead centre.
 constexpr double turning_near = 1e-4, turning = 1e-6;
 constexpr double most_moved = 1e6;   // of a body by a coordinate: rad or lengths, by the same
-
-/// A body that goes along a screw: the twist of its reference point at `at`, times one.
-Displacement along_screw(const Vector3& at, const Vector3& velocity, const Vector3& turn)
-{
-    const double angle = norm(turn);
-    double first = 0.5, second = 1.0 / 6;   // (1 - cos a) / a^2, (a - sin a) / a^3
-    if (angle > 1e-2) {
-        const SineCosine half = sine_cosine(0.5 * angle), whole = sine_cosine(angle);
-        first = 2 * half.sine * half.sine / (angle * angle);
-        second = (angle - whole.sine) / (angle * angle * angle);
-    } else {
-        const double a = angle * angle;
-        first -= a * (1.0 / 24 - a * (1.0 / 720 - a / 40320));
-        second -= a * (1.0 / 120 - a * (1.0 / 5040 - a / 362880));
-    }
-    const Vector3 across = cross(turn, velocity);
-    const Vector3 shift = velocity + first * across + second * cross(turn, across);
-    const Matrix3 rotation = directors_from_rotation_vector(turn);
-    return {at + shift - rotation * at, rotation};
-}
-
-/// Coordinates with what moves most bodies first: outwards along a tree.
-struct Screw {
-    int rate = 0, n_rates = 1, n_moved = 0;
-};
-std::vector<Screw> screws_outwards(const Mechanism& mechanism, const DenseMatrix& by_rates)
-{
-    std::vector<Screw> screws;
-    int rate = 0;
-    for (const GeneralisedCoordinate& c : mechanism.coordinates) {
-        Screw screw{rate, c.n_rates(), 0};
-        rate += c.n_rates();
-        for (const BodyTable& body : mechanism.bodies) {
-            double size = 0;
-            for (int k = 0; k < screw.n_rates; ++k)
-                for (int i = 0; i < body.dofs; ++i)
-                    size = std::max(size, std::abs(by_rates(body.first + i, screw.rate + k)));
-            screw.n_moved += size > 1e-9 ? 1 : 0;
-        }
-        screws.push_back(screw);
-    }
-    std::ranges::stable_sort(screws, std::ranges::greater(), &Screw::n_moved);
-    return screws;
-}
-
-Configuration along_screws(const Mechanism& mechanism, const Placed& from, std::span<const double> way,
-                           double part)
-{
-    Configuration X = from.X;
-    const std::vector<Screw> screws = screws_outwards(mechanism, from.by_rates);
-    for (int b = 0; b < mechanism.model.n_bodies(); ++b) {
-        const BodyTable& body = mechanism.bodies[b];
-        const Vector3 at = from.X[b].column(0);
-        for (auto screw = screws.rbegin(); screw != screws.rend(); ++screw) {
-            Vector3 velocity{}, turn{};
-            for (int k = screw->rate; k < screw->rate + screw->n_rates; ++k)
-                for (int i = 0; i < body.dofs; ++i)
-                    (i < 3 ? velocity[i] : turn[i - 3]) += part * way[k] * from.by_rates(body.first + i, k);
-            if (velocity == Vector3{} && turn == Vector3{}) continue;
-            X[b] = along_screw(at, velocity, turn).of_configuration(X[b]);
-            if (body.dofs == 3) X[b] = configuration(X[b].column(0), Matrix3{});
-        }
-    }
-    return X;
-}
 
 void displace_bodies(const Mechanism& mechanism, std::span<const double> twists, Configuration& X)
 {
@@ -181,25 +119,33 @@ void settle_or_throw(const Mechanism& mechanism, Placed& at)
     if (std::optional<Complaint> why = settle_at(mechanism, at)) throw InputError(std::move(*why));
 }
 
+/// What counts its turns goes on to where the bodies are, each angle the shorter way.
+void follow_turns(const Mechanism& mechanism, const Configuration& X, Placed& at)
+{
+    if (!mechanism.loads.turns.empty()) mechanism.loads.turns.follow(X, at.angles);
+    for (std::size_t i = 0; i < at.counted.size(); ++i) {
+        const JointCoordinate& q = mechanism.counted[i].coordinate;
+        const double value = mechanism.counted[i].at_stated + coordinate_change(q, mechanism.stated, X);
+        at.counted[i] = q.is_angle() ? turned_to(value, at.counted[i]) : value;
+    }
+}
+
 /// The whole way at once, where screws lead there; else nothing.
 std::shared_ptr<Placed> led_at_once(const Mechanism& mechanism, const Placed& from,
                                     std::span<const double> way, std::span<const double> numbers)
 {
     auto there = std::make_shared<Placed>();
     there->X = along_screws(mechanism, from, way, 1);
-    if (!(mechanism.open(there->X) <= rows_closed)) return nullptr;
-    if (!(close_at(mechanism, from.system->rows(), numbers, there->X) <= 1e-6)) return nullptr;
+    if (!(mechanism.open(there->X) <= screws_closed)) return nullptr;
+    if (!(close_at(mechanism, from.system->rows(), numbers, there->X) <= screws_closed)) return nullptr;
     there->numbers.assign(numbers.begin(), numbers.end());
     there->angles = from.angles;
-    if (!mechanism.loads.turns.empty()) {
-        double sum = 0;   // no angle of a load goes farther
-        for (const double one : way) sum += std::abs(one);
-        const int n = static_cast<int>(std::min(1e6, std::ceil(sum / 2)));
-        for (int i = 1; i < n; ++i)
-            mechanism.loads.turns.follow(along_screws(mechanism, from, way, static_cast<double>(i) / n),
-                                         there->angles);
-        mechanism.loads.turns.follow(there->X, there->angles);
-    }
+    there->counted = from.counted;
+    const double farthest = mechanism.farthest_turn(from.by_rates, way);
+    const int n = static_cast<int>(std::min(1e5, std::ceil(farthest / 2)));
+    for (int i = 1; i < n; ++i)
+        follow_turns(mechanism, along_screws(mechanism, from, way, static_cast<double>(i) / n), *there);
+    follow_turns(mechanism, there->X, *there);
     return there;
 }
 
@@ -216,7 +162,8 @@ std::shared_ptr<Placed> led_a_step(const Mechanism& mechanism, const Placed& fro
     if (!(foretold < 1 && corrected <= most_corrected * foretold + rows_closed)) return nullptr;
     there->numbers = std::move(numbers);
     there->angles = from.angles;
-    if (!mechanism.loads.turns.empty()) mechanism.loads.turns.follow(there->X, there->angles);
+    there->counted = from.counted;
+    follow_turns(mechanism, there->X, *there);
     return there;
 }
 
@@ -314,9 +261,12 @@ Complaint why_open(const Mechanism& mechanism, const Placed& last, std::span<con
 
 Placed placed_at_start(const Mechanism& mechanism)
 {
-    Placed placed{
-        mechanism.placed.X, mechanism.numbers, mechanism.loads.turns.begin(mechanism.placed), {}, {}};
-    if (!mechanism.loads.turns.empty()) mechanism.loads.turns.follow(placed.X, placed.angles);
+    Placed placed;
+    placed.X = mechanism.placed.X;
+    placed.numbers = mechanism.numbers;
+    placed.angles = mechanism.loads.turns.begin(mechanism.placed);
+    for (const NamedCoordinate& q : mechanism.counted) placed.counted.push_back(q.at_stated);
+    follow_turns(mechanism, placed.X, placed);
     settle_or_throw(mechanism, placed);
     return placed;
 }
@@ -330,24 +280,48 @@ std::shared_ptr<Placed> led_nearby(const Mechanism& mechanism, const Placed& fro
     return there;
 }
 
-Placed lead(const Mechanism& mechanism, const Placed& from, std::span<const double> numbers)
+namespace {
+
+/// The numbers of `to` for bodies, of `from` for joints.
+std::vector<double> of_bodies(const Mechanism& mechanism, std::span<const double> from,
+                              std::span<const double> to)
 {
-    const std::vector<double> way = mechanism.way(from.numbers, numbers);
-    if (std::ranges::all_of(way, [](double one) { return one == 0; })) return from;
-    if (std::shared_ptr<Placed> there = led_at_once(mechanism, from, way, numbers)) {
-        settle_or_throw(mechanism, *there);
-        return *there;
-    }
+    std::vector<double> numbers(from.begin(), from.end());
+    std::size_t k = 0;
+    for (const GeneralisedCoordinate& c : mechanism.coordinates)
+        for (int i = 0; i < c.n_numbers(); ++i, ++k)
+            if (c.of != Of::joint) numbers[k] = to[k];
+    return numbers;
+}
+
+void refuse_far(const Mechanism& mechanism, std::span<const double> way)
+{
+    int rate = 0;
+    for (int i = 0; i < static_cast<int>(mechanism.coordinates.size()); ++i)
+        for (int k = 0; k < mechanism.coordinates[i].n_rates(); ++k, ++rate)
+            if (!(std::abs(way[rate]) <= way_longest * mechanism.unit_of(i)))
+                throw InputError(
+                    {"coordinate-value", "q[" + mechanism.coordinates[i].name + "]",
+                     "coordinate '" + mechanism.coordinates[i].name +
+                         "' is too far from where the bodies are placed for a loop to be led there",
+                     to_text(way[rate], 3), "1000 turns or 6000 model lengths", "",
+                     "place the bodies nearer to the state, or leave whole turns out"});
+}
+
+/// In steps, each as long as the rows close by it and little is corrected.
+Placed led_in_steps(const Mechanism& mechanism, Placed here, std::span<const double> numbers)
+{
+    const std::vector<double> from = here.numbers, way = mechanism.way(from, numbers);
+    refuse_far(mechanism, way);
     const double whole = 1 / std::max(1.0, std::ceil(mechanism.size_of(way) / way_step));
     double length = whole, done = 0;
-    Placed here = from;
     std::optional<Complaint> why;
     while (done < 1) {
         const double next = std::min(1.0, done + length);
         std::vector<double> part(way.size());
         for (std::size_t k = 0; k < way.size(); ++k) part[k] = (next - done) * way[k];
-        std::vector<double> there = next == 1 ? std::vector<double>(numbers.begin(), numbers.end())
-                                              : mechanism.gone(from.numbers, way, next);
+        std::vector<double> there =
+            next == 1 ? std::vector<double>(numbers.begin(), numbers.end()) : mechanism.gone(from, way, next);
         std::shared_ptr<Placed> led = led_a_step(mechanism, here, part, std::move(there));
         if (led != nullptr) why = settle_at(mechanism, *led);   // one on the way is stepped over
         if (led != nullptr && !why) {
@@ -361,6 +335,23 @@ Placed lead(const Mechanism& mechanism, const Placed& from, std::span<const doub
             throw InputError(why ? std::move(*why) : why_open(mechanism, here, numbers));
     }
     return here;
+}
+
+}   // namespace
+
+Placed lead(const Mechanism& mechanism, const Placed& from, std::span<const double> numbers)
+{
+    const std::vector<double> way = mechanism.way(from.numbers, numbers);
+    if (std::ranges::all_of(way, [](double one) { return one == 0; })) return from;
+    if (std::shared_ptr<Placed> there = led_at_once(mechanism, from, way, numbers)) {
+        settle_or_throw(mechanism, *there);
+        return *there;
+    }
+    // Bodies that joints leave free take all that hangs on them along, however far.
+    const std::vector<double> first = of_bodies(mechanism, from.numbers, numbers);
+    std::shared_ptr<Placed> moved = led_at_once(mechanism, from, mechanism.way(from.numbers, first), first);
+    if (moved == nullptr || settle_at(mechanism, *moved)) return led_in_steps(mechanism, from, numbers);
+    return led_in_steps(mechanism, std::move(*moved), numbers);
 }
 
 }   // namespace livens::inline dynamics_internal

@@ -55,15 +55,17 @@ Vector3 turn(const Matrix3& from, const Matrix3& to)
 
 Mechanism::Mechanism(const Model& the_model, const State& at, StartPolicy policy,
                      const std::vector<std::string>& wanted)
-    : model(released(the_model, at.t)), bodies(model), loads(model), length(model.length())
+    : model(released(the_model, at.t)), bodies(model), loads(model), length(model.length()),
+      stated(model.start().X)
 {
+    for (const Joint& joint : model.joints())
+        counted.insert(counted.end(), joint.coordinates.begin(), joint.coordinates.end());
     State rest = at;
     for (Matrix34& V : rest.V) V = {};
     const ConsistentStart closed = consistent_start(model, rest, policy);
     placed = closed.start;
     rank = static_cast<int>(closed.independent.size());
     coordinates = choose_coordinates(model, placed, closed.independent, wanted);
-    const Configuration stated = model.start().X;
     for (const GeneralisedCoordinate& c : coordinates) {
         rows.emplace_back();
         if (c.of == Of::joint) rows.back() = counted_row(model.joints()[c.part].coordinates[c.index], stated);
@@ -164,6 +166,18 @@ double Mechanism::size_of_twists(std::span<const double> twists) const
             if (!(size <= largest)) largest = size;   // keeps what is no number
         }
     return largest;
+}
+
+double Mechanism::farthest_turn(const DenseMatrix& by_rates, std::span<const double> way) const
+{
+    double farthest = 0;
+    for (const BodyTable& body : bodies) {
+        double sum = 0;
+        for (int k = 0; k < n_rates; ++k)
+            for (int i = 3; i < body.dofs; ++i) sum += std::abs(by_rates(body.first + i, k) * way[k]);
+        farthest = std::max(farthest, sum);
+    }
+    return 2 * farthest;   // of two bodies against each other
 }
 
 double Mechanism::open(const Configuration& X, int* row) const

@@ -35,7 +35,9 @@ struct Mechanism {
     BodyTables bodies;
     LoadTables loads;
     double length;
-    State placed;   ///< closed
+    Configuration stated;                   ///< where coordinates of joints begin to count
+    std::vector<NamedCoordinate> counted;   ///< of all joints
+    State placed;                           ///< closed
     std::vector<GeneralisedCoordinate> coordinates;
     std::vector<CountedRow> rows;   ///< of those that are a joint's, else empty ones
     std::vector<double> numbers;    ///< where it is placed
@@ -54,6 +56,8 @@ struct Mechanism {
     double size_of(std::span<const double> way) const;
     /// Likewise of twists of all bodies.
     double size_of_twists(std::span<const double> twists) const;
+    /// The sum of what all coordinates turn any body by on a way, rad: no angle turns farther.
+    double farthest_turn(const DenseMatrix& by_rates, std::span<const double> way) const;
     /// Of all rows the largest |Phi| over scale, and which.
     double open(const Configuration& X, int* row = nullptr) const;
 };
@@ -103,10 +107,15 @@ private:
 struct Placed {
     Configuration X;
     std::vector<double> numbers;
-    std::vector<double> angles;   ///< of loads
+    std::vector<double> angles;    ///< of loads
+    std::vector<double> counted;   ///< all coordinates of joints, with their turns
     std::shared_ptr<const CoordinateSystem> system;
     DenseMatrix by_rates;   ///< twists of all bodies: n_twists x n_rates
 };
+
+/// Bodies moved by a part of a way along the screws of its coordinates, as they are at `from`.
+Configuration along_screws(const Mechanism& mechanism, const Placed& from, std::span<const double> way,
+                           double part);
 
 /// Where a mechanism is placed; and led from one place to another. Throw as GeneralisedCoordinates::at()
 /// does.
