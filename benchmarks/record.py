@@ -152,7 +152,8 @@ def law_words(record, name):
     """What the page says of one scan beside its table."""
     whole = record[name]["kinds"]["all"]
     return [f"{record[name]['converged']} of {whole['runs']} runs were called converged",
-            f"{whole['over']} took more than 20 s, {whole['untold']} had no truth good enough, "
+            f"{whole['over']} took more than 20 s (with an accuracy {'they are' if whole['over'] > 1 else 'it is'} among the refused), "
+            f"{whole['untold']} had no sufficiently accurate reference solution, "
             f"{whole['false alarm']} on given meshes were suspect and right to 1e-3",
             f"with `looks` off, {record[name]['wrong without the looks']} are wrong"]
 

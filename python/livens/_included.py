@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from . import _core
 from ._entries import default_name, unknown_name
 from ._errors import fault, user_place
+from ._meshes import MeshFile
 from ._rotations import with_rotation
 from ._tree import KINDS, Table, plain, schema
 

@@ -212,13 +212,13 @@ def check_recorded(d):
            + " converged runs wrong")
     d.says("docs/trust.md", f"Without estimates, {100 * meshes['pass without an estimate']:.0f} percent of the suspect runs")
     counts, largest = zip(*((meshes[k]["resolved"], meshes[k]["resolved, in estimates"]) for k in ("examples", "others")))
-    d.says("docs/trust.md", "Over all {} and {} runs of this kind, the largest true error was {:.2f} and {:.2f} estimates".format(*counts, *largest))
+    d.says("docs/trust.md", "Over all {} and {} runs of this kind, the largest true error was {:.2f} and {:.2f} times the estimate".format(*counts, *largest))
     for name, (error, estimate) in meshes["coarse"].items():
         d.holds(re.search(rf"`{name}` with [^`]*?{error:.1e} (?:off and estimated|and) {estimate:.1e}".replace("e-0", "e-"),
                           d.texts["docs/trust.md"]), f"docs/trust.md: {name} is {error:.1e} off, estimated {estimate:.1e}")
     parts = [accuracies[kind] for kind in ("without output", "with output")]
-    d.says("docs/trust.md", f"| motions, bursts apart | {parts[0]['motions']} | {parts[1]['motions']} |")
-    for key, title, digits in (("work", "work of the march", 2), ("work_in_all", "work in all", 1)):
+    d.says("docs/trust.md", f"| motions without bursts | {parts[0]['motions']} | {parts[1]['motions']} |")
+    for key, title, digits in (("work", "work of the final time integration", 2), ("work_in_all", "work in all", 1)):
         cells = [", ".join(f"{x:.{digits}f}" for x in part[key]) for part in parts]
         d.says("docs/trust.md", f"| {title}: median, nine in ten, largest | {cells[0]} | {cells[1]} |")
     for words in record.work_rows(recorded["work"]):
@@ -226,7 +226,7 @@ def check_recorded(d):
     d.says("docs/trust.md", f"`: {accuracies['bursts']} motions): no uniform mesh")
     d.says("docs/trust.md", f"{100 * accuracies['estimates within 5']:.1f} percent")
     refused = {name: 100 * share for name, share in accuracies["refused"].items()}
-    d.says("docs/trust.md", f"Refused were at most {refused['largest']:.0f} percent of a motion's elements, with bursts {refused['largest with bursts']:.0f}.")
+    d.says("docs/trust.md", f"At most {refused['largest']:.0f} percent of a motion's elements were rejected and divided, with bursts {refused['largest with bursts']:.0f} percent.")
     d.says("docs/theory.md", f"{refused['of all']:.1f} percent of all elements are refused, of one motion at most {refused['largest']:.0f} percent")
     d.says("docs/theory.md", f"is not foretold by what was, {refused['largest with bursts']:.0f} percent")
     for name in record.LAW_SCANS:

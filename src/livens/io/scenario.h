@@ -55,7 +55,7 @@ struct MeshSource {
     std::optional<std::filesystem::path> folder = {};
     /// What Scenario::meshes held when the run was solved: what stands in it is not read.
     std::string kept = {};
-    /// Files of meshes by what they are called here, wherever they lie: those that a caller names himself, and
+    /// Files of meshes by what they are called here, wherever they lie: those that a caller names, and
     /// never what a scenario names.
     std::map<std::string, std::filesystem::path> named = {};
 };
