@@ -4,7 +4,6 @@ import pathlib
 import pickle
 
 import livens as lv
-import numpy as np
 import pytest
 
 BOX = """v 0 0 0
@@ -34,13 +33,17 @@ def box(tmp_path: pathlib.Path) -> pathlib.Path:
 
 def of(mesh: lv.Shape) -> lv.Model:
     m = lv.Model("one")
-    m.add_body("b", mesh)
+    m.add_body("b", mesh, velocity=(1, 0, 0))
     return m
+
+
+def mass(m: lv.Model) -> float:
+    return float(lv.solve(m, 0.1)["b"].linear_momentum[0, 0])
 
 
 def test_lie_anywhere_and_the_result_keeps_them(box: pathlib.Path, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     m = of(lv.mesh(box, unit="m", density=1))
-    assert m["b"].mass == pytest.approx(6, rel=1e-14)
+    assert mass(m) == pytest.approx(6, rel=1e-14)
     sol = lv.solve(m, 0.1)
     sol.save(tmp_path / "run.nc")
     box.unlink()
@@ -75,7 +78,7 @@ def test_are_written_beside_a_scenario(box: pathlib.Path, tmp_path: pathlib.Path
     target.mkdir()
     m.to_toml(target / "one.toml")
     assert sorted(f.name for f in target.iterdir())[0].startswith("box-")
-    assert lv.load(target / "one.toml")["b"].mass == pytest.approx(6, rel=1e-14)
+    assert mass(lv.load(target / "one.toml")) == pytest.approx(6, rel=1e-14)
     copied = next(f for f in target.iterdir() if f.suffix == ".obj")
     copied.write_text("v 0 0 0\n")
     with pytest.raises(FileExistsError):
@@ -84,13 +87,12 @@ def test_are_written_beside_a_scenario(box: pathlib.Path, tmp_path: pathlib.Path
 
 def test_of_strangers_stay_below_their_folder(box: pathlib.Path, tmp_path: pathlib.Path) -> None:
     m = of(lv.mesh(box, unit="m", density=1))
-    name = lv.load(text=m.to_toml())
-    with pytest.raises(lv.InputError, match="does not exist|mesh-file"):
-        lv.solve(name, 0.1)
+    with pytest.raises(lv.InputError, match="mesh-file"):
+        lv.load(text=m.to_toml())
     for path in (str(box), "../box.obj"):
         text = m.to_toml().replace([line for line in m.to_toml().split('"') if line.startswith("box-")][0], path)
         with pytest.raises(lv.InputError, match="mesh-path"):
-            lv.solve(lv.load(text=text), 0.1)
+            lv.load(text=text)
 
 
 def test_that_do_not_exist_or_are_of_no_kind_are_told(box: pathlib.Path, tmp_path: pathlib.Path) -> None:
@@ -107,5 +109,4 @@ def test_of_other_formats_are_read_by_trimesh(box: pathlib.Path, tmp_path: pathl
     file = tmp_path / "box.glb"
     trimesh.load(box, force="mesh").export(file)
     m = of(lv.mesh(file, unit="m", density=1))
-    assert m["b"].mass == pytest.approx(6, rel=1e-7)
-    assert np.allclose(m["b"].center_of_mass, (0.5, 1, 1.5), atol=1e-7)
+    assert mass(m) == pytest.approx(6, rel=1e-7)
