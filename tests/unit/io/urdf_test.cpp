@@ -260,9 +260,15 @@ TEST(Urdf, MimicsOfEveryPairOfKindsAreCoupled)
             options.rates = {{"lead", 1}};
             const UrdfResult result = read_robot(chain(first, second, mimic), options);
             ASSERT_TRUE(result.scenario) << told(result);
-            const bool are_slides = first == std::string("prismatic") && second == std::string("prismatic");
-            EXPECT_EQ(n_told(result, "import-mended", "racks"), are_slides ? 1 : 0);
-            EXPECT_NE(result.toml.find("name = \"follow\""), std::string::npos);
+            const auto coordinate = [](const std::string& kind) {
+                return kind == "prismatic" ? ".displacement" : ".angle";
+            };
+            EXPECT_NE(result.toml.find(std::string("terms = { \"lead") + coordinate(first) +
+                                       "\" = 2.0, \"follow" + coordinate(second) + "\" = 1.0 }"),
+                      std::string::npos)
+                << result.toml;
+            EXPECT_EQ(result.scenario->model.joints().size(), 3u);
+            EXPECT_EQ(result.scenario->model.n_bodies(), 2);
         }
     const UrdfResult held =
         read_robot(chain("revolute", "revolute", "<mimic joint='lead' multiplier='0' offset='1'/>"));

@@ -100,14 +100,6 @@ inline constexpr LossKind inertia{
     true,
     true};
 inline constexpr LossKind axis{"import-mended", "joint", "joints", "axis was normalised to length 1"};
-inline constexpr LossKind pinion{
-    "import-mended",
-    "joint",
-    "joints",
-    "coupled to another prismatic joint by two racks on a pinion of 1e-9 of the smallest mass",
-    "",
-    false,
-    true};
 
 }   // namespace losses
 
