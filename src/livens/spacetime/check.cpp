@@ -76,7 +76,7 @@ void refuse_special_rows(const Model& model, const Method& method)
                               "the method " + name + " cannot hold " + model.row_name(r), name,
                               "lobatto or radau",
                               "its rows must be quadratic forms of the bodies' positions and directors",
-                              "use lobatto for screws, gears and slots"});
+                              "use lobatto for screws, couplings, gears and slots"});
 }
 
 /// Where forces follow the motion, vibrations and laws that bend make errors that add up from element to

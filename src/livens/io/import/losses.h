@@ -100,6 +100,14 @@ inline constexpr LossKind inertia{
     true,
     true};
 inline constexpr LossKind axis{"import-mended", "joint", "joints", "axis was normalised to length 1"};
+inline constexpr LossKind multiplier{
+    "import-mended",
+    "joint",
+    "joints",
+    "multiplier of mimic was changed to the nearest ratio of whole numbers up to 10000",
+    "",
+    false,
+    true};
 
 }   // namespace losses
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -35,6 +36,24 @@ TableMaker frame_table(const Pose& pose)
     TableMaker table({});
     table.vector("point", pose.origin).rows("directors", triad(pose.axes));
     return table;
+}
+
+/// The nearest ratio of whole numbers up to 10000, which two angles that may turn round and round must have;
+/// the multiplier itself if it is one, or near none.
+double ratio_of_angles(double multiplier)
+{
+    constexpr int most = 10000;
+    constexpr double rounding = 1e-11;   // of decimals
+    const double size = std::abs(multiplier);
+    double nearest = size, least = std::numeric_limits<double>::infinity();
+    for (int q = 1; q <= most; ++q) {
+        const double p = std::round(size * q), off = std::abs(p / q - size);
+        if (p < 1 || p > most || off >= least) continue;
+        if (off <= rounding * size) return multiplier;
+        least = off;
+        nearest = p / q;
+    }
+    return std::copysign(nearest, multiplier);
 }
 
 }   // namespace
@@ -115,11 +134,14 @@ TableMaker UrdfJoints::coupling(const UrdfJoint& joint)
 {
     const UrdfMimic& mimic = *joint.mimic;
     const auto leader = std::ranges::find(file_.joints, mimic.joint, &UrdfJoint::name);
+    double multiplier = mimic.multiplier;
+    if (leader->turns() && joint.turns()) multiplier = ratio_of_angles(multiplier);
+    if (multiplier != mimic.multiplier) losses_.add(losses::multiplier, mimic.place, "'" + joint.name + "'");
     const auto coordinate = [&](const UrdfJoint& of) {
         return names_.at(of.name) + (of.turns() ? ".angle" : ".displacement");
     };
     TableMaker terms(mimic.place);
-    terms.number(coordinate(*leader), -mimic.multiplier).number(coordinate(joint), 1);
+    terms.number(coordinate(*leader), -multiplier).number(coordinate(joint), 1);
     TableMaker table = joint_table(mimic.place, unused("mimic " + joint.name), "coupling");
     table.table("terms", std::move(terms));
     return table;
