@@ -9,6 +9,7 @@ import sys
 import textwrap
 
 NONE, FLAG, TRUTH, INTEGER, NUMBER, TEXT, CHOICE, NAMES, NAMED_TEXTS, ROW, ROWS, TABLE, TABLES = range(13)
+FACTORS = 16
 HEAD = '''# SPDX-License-Identifier: BSD-3-Clause
 """Generated from the schema of scenarios; see python/generate.py."""
 from __future__ import annotations
@@ -36,7 +37,7 @@ MESH_FILE = ("A path from the model's folder on, or any other path: the file is 
              "installed. Mesh coordinates are body coordinates.")
 WRITTEN = {FLAG: "bool", TRUTH: "bool", INTEGER: "int", NUMBER: "Number", TEXT: "str", NAMES: "Sequence[str | Entry]",
            NAMED_TEXTS: "Mapping[str, str]", ROW: "Vector", ROWS: "Matrix", TABLE: "Mapping[str, Any]",
-           TABLES: "Sequence[Mapping[str, Any]]"}
+           TABLES: "Sequence[Mapping[str, Any]]", FACTORS: "Mapping[str, Number]"}
 OF_MESHES = ("unit", "scale", "turn", "densities")
 OF_SOLIDS = ("density_field",)
 READ = {FLAG: "bool", TRUTH: "bool", INTEGER: "int", NUMBER: "float", TEXT: "str", ROW: "Floats", ROWS: "Floats",
@@ -197,7 +198,7 @@ class Writer:
         elif one is not None:
             front.append(f"{one['name']}: {REFERENCES[one['name']]}" + (" | None = None" if one["told_by"] else ""))
         in_front = {"name", "shape" if kind == "body" else "", one["name"] if one is not None and pair is None else ""}
-        behind = [key for key in keys if kind == "point" and key["name"] == "position"]
+        behind = [key for key in keys if kind == "point" and key["name"] == "position" or key["form"] == FACTORS]
         front += [f"{key['name']}: {written(key)} | None = None" for key in behind]
         in_front |= {key["name"] for key in behind}
         rest = [key for key in keys if key["name"] not in in_front]

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 
 from ._errors import Place
 
-_POSITIONS = {"name": 0, "between": 1, "joints": 1, "points": 1, "shape": 1, "body": 1, "joint": 1, "type": 1}
+_POSITIONS = {"name": 0, "between": 1, "joints": 1, "terms": 1, "points": 1, "shape": 1, "body": 1, "joint": 1, "type": 1}
 
 
 def written(place: Place, key: str, name: object = None, inner: Sequence[str] = ()) -> Place:

@@ -40,6 +40,7 @@ const kinds: Record<string, Piece[]> = {
   parallel_axes: arms,
   perpendicular_axes: arms,
   constant_angle: arms,
+  coupling: [], // has no place of its own
   gear: [], // see couplings.ts
   rack_and_pinion: [],
   bushing: [disc(0, 1.3, 2.1), disc(0, 1.6, 1.1)], // a load, drawn as what it is made of

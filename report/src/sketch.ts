@@ -25,6 +25,7 @@ const turning = new Set(["revolute", "spherical", "universal", "constant_velocit
 const sliding = new Set(["prismatic", "cylindrical", "screw", "point_on_line"]);
 /** Joints that couple others, or say only how axes stand, have no place of their own. */
 const placeless = new Set([
+  "coupling",
   "gear",
   "rack_and_pinion",
   "drive",

@@ -1389,3 +1389,28 @@ livens_mutant(NAME state_dead_centre
               NEW [[if (false && open <= turning && mechanism.size_of(way) < turning_near)]]
               TESTS_OF unit_dynamics
               MUST_FAIL GeneralisedState.NamesADeadCentre)
+
+# The slope of a coupled displacement without its factor: right where the factor is one, as in racks and screws.
+livens_mutant(NAME coupled_slide_slope
+              FILE multibody/joint_coordinates.cpp
+              OLD [[value.gradient[0] = factor;]]
+              NEW [[value.gradient[0] = factor / std::abs(factor);]]
+              TESTS_OF properties
+              MUST_FAIL CoupledJoints.ARowOfManyTermsIsTheSumOfThem)
+
+# In lanes every function but the first reads the form behind its own: right for rows of one function, and for
+# screws, whose angle comes first, but for what follows.
+livens_mutant(NAME coupled_forms_of_lanes
+              FILE dynamics/lanes/row_forms.cpp
+              OLD [[            first += static_cast<int>(F.n);]]
+              NEW [[            first += 1;]]
+              TESTS_OF reference
+              MUST_FAIL Couplings.RandomTreesOnALineMoveAsTheirReducedMasses)
+
+# While a start is projected, a coupling takes the nearest of its equal positions and not the stated one.
+livens_mutant(NAME coupling_lost_in_projection
+              FILE dynamics/rows/rows.cpp
+              OLD [[std::round((followed - values[r]) / row.period)]]
+              NEW [[std::round(0 * (followed - values[r]) / row.period)]]
+              TESTS_OF reference
+              MUST_FAIL Couplings.AProjectedStartKeepsWhatTheStatedOneHad)

@@ -6,6 +6,7 @@
 
 #include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/joint_coordinates.h"
+#include "livens/multibody/joints.h"
 #include "livens/multibody/model.h"
 #include "properties/joint_kit.h"
 
@@ -112,7 +113,7 @@ TEST(CoupledJoints, AWrongDerivativeFailsTheRates)
         joint.make = [=, make = joint.make](int first, int second, const JointFrame& frame, const Matrix34& X,
                                             const Matrix34& Y) {
             Joint made = make(first, second, frame, X, Y);
-            SmoothFunction& f = *made.rows.back().function;
+            SmoothFunction& f = made.rows.back().functions.back();
             f.at = [=, inner = f.at](const SmoothFunction::Point& q) {
                 SmoothFunction::Value value = inner(q);
                 value.gradient[1] *= gradient;
@@ -223,12 +224,138 @@ TEST(CoupledJoints, WhatNoTeethCanDoIsRefused)
     expect_complaint([] { gear(0, 1); }, "joint-row");
     expect_complaint([] { coupling_row({}, 0, 1, "none"); }, "joint-row");
     const auto turn = angle_between(0, direction({1, 0, 0}), direction({0, 1, 0}), 1, direction({1, 0, 0}));
-    EXPECT_NO_THROW(coupling_row({{1, turn}, {2, turn}, {3, turn}}, 0, 1, "three"));
+    EXPECT_NO_THROW(coupling_row({{1, turn}, {2, turn}, {3, turn}, {4, turn}}, 0, 1, "four"));
+}
+
+/// One wheel each on its carrier, the wheels turned by `angles` about it.
+struct ManyWheels {
+    static constexpr int n = RowBodies::most / 2;
+    std::vector<CoupledCoordinate> terms;
+    Bodies X, V;
+
+    explicit ManyWheels(Random& random)
+    {
+        const Vector4 u = direction({1, 0, 0}), v = direction({0, 1, 0}), w = direction({0, 0, 1});
+        for (int k = 0; k < n; ++k) {
+            const Bodies pair = wheels(random.rotation(), 2 * random.number(), 0);
+            for (int i = 0; i < 2; ++i) {
+                X.push_back(pair[static_cast<std::size_t>(i)] + 0.1 * random.matrix<3, 4>());
+                V.push_back(random.matrix<3, 4>());
+            }
+            terms.push_back({(k % 2 == 0 ? 1.0 : -1.5) * (1 + k % 3),
+                             k % 4 == 0 ? displacement_along(2 * k, w, point({}), 2 * k + 1, point({}))
+                                        : angle_between(2 * k, u, v, 2 * k + 1, u)});
+        }
+    }
+};
+
+/// The value on the straight way through X is the sum of its terms, each of which has a row of its own, and
+/// so are its gradient and curvature.
+TEST(CoupledJoints, ARowOfManyTermsIsTheSumOfThem)
+{
+    Random random(13);
+    const ManyWheels many(random);
+    const ConstraintRow row = coupling_row(many.terms, 0.3, 1, "many");
+    EXPECT_EQ(row_bodies(row).size, RowBodies::most);
+    double value = -0.3, curvature = 0, change = 0;
+    Bodies step = many.V;
+    for (Matrix34& v : step) v = 0.1 * v;
+    Bodies moved = many.X;
+    for (std::size_t b = 0; b < moved.size(); ++b) moved[b] += step[b];
+    const RowGradient g = constraint_gradient(row, many.X);
+    for (const CoupledCoordinate& term : many.terms) {
+        const ConstraintRow alone = coupling_row({term}, 0, 1, "one");
+        value += term.factor * coordinate_value(term.coordinate, many.X);
+        curvature += constraint_curvature(alone, {}, many.X, many.V);
+        change += constraint_change(alone, {}, many.X, {}, moved, step);
+        const RowGradient h = constraint_gradient(alone, many.X);
+        for (const int b : h.bodies) EXPECT_LT(norm(g.of(b) - h.of(b)), 1e-15);
+        for (const int b : h.bodies)
+            for (const int c : {0, RowBodies::most - 1}) {
+                const Matrix<12, 12> H = constraint_hessian(row, {}, many.X, b, c);
+                EXPECT_LT(norm(H - constraint_hessian(alone, {}, many.X, b, c)), 1e-15) << b << " " << c;
+            }
+    }
+    EXPECT_NEAR(std::remainder(value - constraint_value(row, many.X), row.period), 0, 1e-12);
+    EXPECT_LE(std::abs(constraint_value(row, many.X)), row.period / 2);
+    EXPECT_NEAR(constraint_curvature(row, {}, many.X, many.V), curvature, 1e-11);
+    EXPECT_NEAR(constraint_change(row, {}, many.X, {}, moved, step), change, 1e-12);
+
+    double rate = 0;
+    for (const int b : g.bodies) rate += dot(g.of(b), many.V[static_cast<std::size_t>(b)]);
+    constexpr double h = 0.002;
+    const auto at = [&](int k) {
+        Bodies there = many.X, by = many.V;
+        for (std::size_t b = 0; b < by.size(); ++b) by[b] = k * h * by[b], there[b] += by[b];
+        return constraint_change(row, {}, many.X, {}, there, by);
+    };
+    EXPECT_NEAR(rate, (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h), 1e-7 * (1 + std::abs(rate)));
+    EXPECT_NEAR(curvature, (16 * (at(1) + at(-1)) - (at(2) + at(-2))) / (12 * h * h),
+                1e-5 * (1 + std::abs(curvature)));
+}
+
+TEST(CoupledJoints, OneBodyTooManyIsRefused)
+{
+    Random random(14);
+    ManyWheels many(random);
+    const Vector4 z = direction({0, 0, 1});
+    many.terms.push_back({1, displacement_along(world, z, point({}), 2 * ManyWheels::n, point({}))});
+    const ConstraintRow row = coupling_row(many.terms, 0, 1, "many");
+    expect_complaint([&] { row_bodies(row); }, "joint-row");
+}
+
+struct TwoHinges {
+    Bodies X{configuration({}, identity<3>()), configuration({}, identity<3>())};
+    Joint left = at("left", 0), right = at("right", 1), slide = sliding();
+
+    Joint at(const char* name, int body) const
+    {
+        return revolute(name, world, body, joint_frame(world_configuration, X[0], {}, {0, 0, 1}));
+    }
+    Joint sliding() const
+    {
+        return prismatic("slide", world, 1, joint_frame(world_configuration, X[1], {}, {0, 0, 1}),
+                         world_configuration, X[1]);
+    }
+    Joint coupled(const std::vector<CoupledJoint>& terms) const { return coupling("both", terms, X, 2); }
+};
+
+TEST(CoupledJoints, ACouplingSaysWhatIsWrongWithItsTerms)
+{
+    const TwoHinges of;
+    expect_complaint([&] { of.coupled({}); }, "coupling-terms");
+    expect_complaint([&] { of.coupled({{1, &of.left, "angle"}}); }, "coupling-terms");
+    expect_complaint([&] { of.coupled({{1, &of.left, "angle"}, {2, &of.left, "angle"}}); }, "coupling-terms");
+    expect_complaint([&] { of.coupled({{1, &of.left, "angle"}, {0, &of.right, "angle"}}); }, "joint-factor");
     expect_complaint(
         [&] {
-            coupling_row({{1, turn}, {2, turn}, {3, turn}, {4, turn}}, 0, 1, "four");
+            of.coupled({{1, &of.left, "angle"}, {1, &of.right, "displacement"}});
         },
-        "joint-row");
+        "joint-coordinate");
+    const Joint ball = spherical("ball", world, 0, {});
+    expect_complaint([&] { of.coupled({{1, &of.left, "angle"}, {1, &ball, "angle"}}); }, "joint-coordinate");
+    expect_complaint([&] { of.coupled({{1, &of.left, "angle"}, {pi, &of.right, "angle"}}); }, "gear-ratio");
+    const Joint made = of.coupled({{1, &of.left, "angle"}, {-pi, &of.slide, "displacement"}});
+    EXPECT_EQ(made.first, 0);
+    EXPECT_EQ(made.second, 1);
+    EXPECT_NEAR(made.rows[0].scale, 2 * pi, 1e-14);
+}
+
+TEST(CoupledJoints, GearsAndRacksAreCouplingsOfTwo)
+{
+    Random random(15);
+    const TwoHinges of;
+    const ConstraintRow rows[][2] = {
+        {gear("g", of.left, of.right, 1.5, of.X).rows[0],
+         of.coupled({{-1.5, &of.left, "angle"}, {1, &of.right, "angle"}}).rows[0]},
+        {rack_and_pinion("r", of.left, of.slide, 0.3, of.X).rows[0],
+         of.coupled({{-0.3, &of.left, "angle"}, {1, &of.slide, "displacement"}}).rows[0]}};
+    for (const auto& [one, other] : rows)
+        for (int n = 0; n < 20; ++n) {
+            const Bodies X{configuration(random.vector(), random.rotation()),
+                           configuration(random.vector(), random.rotation())};
+            EXPECT_EQ(constraint_value(one, X), constraint_value(other, X));
+        }
 }
 
 TEST(CoupledJoints, ACurveThatCrossesItselfIsRefused)

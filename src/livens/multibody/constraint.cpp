@@ -5,6 +5,7 @@
 #include "livens/multibody/constraint.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "livens/base/error.h"
@@ -50,20 +51,20 @@ double form_change(const QuadraticForm& f, int i, int j, const Configurations& X
     return 0.5 * (form_rate(f, i, j, X_from, step) + form_rate(f, i, j, X, step));
 }
 
-/// act(q_k, body_i, body_j, k) of all coordinates.
+/// act(q, body_i, body_j) of the coordinates of one function.
 template <typename Act>
-SmoothFunction::Point of_coordinates(const ConstraintRow& row, const Act& act)
+SmoothFunction::Point of_coordinates(const ConstraintRow& row, const SmoothFunction& F, std::size_t first,
+                                     const Act& act)
 {
     SmoothFunction::Point q{};
-    for (std::size_t k = 0; k < row.coordinates.size(); ++k)
-        q[k] = act(row.coordinates[k], row.coordinates[k].body_i, row.coordinates[k].body_j);
+    for (std::size_t k = 0; k < F.n; ++k) {
+        const PairForm& form = row.coordinates[first + k];
+        q[k] = act(form, form.body_i, form.body_j);
+    }
     return q;
 }
 
-SmoothFunction::Point coordinates(const ConstraintRow& row, const Configurations& X)
-{
-    return of_coordinates(row, [&](const auto& form, int i, int j) { return form_value(form, i, j, X); });
-}
+bool touches(const PairForm& form, int body) { return form.body_i == body || form.body_j == body; }
 
 void refuse_drives(const ConstraintRow& row)
 {
@@ -72,12 +73,11 @@ void refuse_drives(const ConstraintRow& row)
 
 }   // namespace
 
-SmoothFunction::Point function_point(const ConstraintRow& row, const Configurations& X)
+SmoothFunction::Point function_point(const ConstraintRow& row, const SmoothFunction& F, std::size_t first,
+                                     const Configurations& X)
 {
-    SmoothFunction::Point q{};
-    for (std::size_t k = 0; k < row.coordinates.size(); ++k)
-        q[k] = form_value(row.coordinates[k], row.coordinates[k].body_i, row.coordinates[k].body_j, X);
-    return q;
+    return of_coordinates(row, F, first,
+                          [&](const auto& form, int i, int j) { return form_value(form, i, j, X); });
 }
 
 double form_value(const QuadraticForm& f, int i, int j, const Configurations& X)
@@ -115,13 +115,15 @@ double constraint_value(const ConstraintRow& row, Instant at, const Configuratio
     double phi = form_value(row, row.body_i, row.body_j, X);
     for (const Drive& drive : row.drives)
         phi += drive.factor(at).value * form_value(drive.form, row.body_i, row.body_j, X);
-    if (row.function) phi += row.function->at(coordinates(row, X)).value;
-    return phi;
+    for_each_function(row, [&](const SmoothFunction& F, std::size_t first) {
+        phi += F.at(function_point(row, F, first, X)).value;
+    });
+    return row.period > 0 ? std::remainder(phi, row.period) : phi;
 }
 
 RowGradient constraint_gradient(const ConstraintRow& row, Instant at, const Configurations& X)
 {
-    RowGradient gradient{row_bodies(row)};
+    RowGradient gradient(row);
     for_each_form(row, at, X, [&](const QuadraticForm& form, int i, int j, double weight) {
         const FormGradient g = form_gradient(form, i, j, X);
         gradient.by[gradient.bodies.find(j)] += weight * g.j;
@@ -156,19 +158,25 @@ Matrix<12, 12> constraint_hessian(const ConstraintRow& row, Instant at, const Co
     for_each_form(row, at, X, [&](const QuadraticForm& form, int i, int j, double weight) {
         add_form_hessian(form, i, j, weight, body, other, H);
     });
-    if (!row.function) return H;
     const auto by = [&](const PairForm& q, int wanted) {
         const FormGradient g = form_gradient(q, q.body_i, q.body_j, X);
         Matrix<12, 1> column{};
-        const Matrix34 of = wanted == q.body_j ? g.j : wanted == q.body_i ? g.i : Matrix34{};
-        std::copy_n(of.a, 12, column.a);
+        std::copy_n(wanted == q.body_j ? g.j.a : g.i.a, 12, column.a);
         return column;
     };
-    const SmoothFunction::Value F = row.function->at(coordinates(row, X));
-    for (std::size_t k = 0; k < row.coordinates.size(); ++k)
-        for (std::size_t l = 0; l < row.coordinates.size(); ++l)
-            if (F.hessian[k][l] != 0)
-                H += F.hessian[k][l] * outer(by(row.coordinates[k], body), by(row.coordinates[l], other));
+    for_each_function(row, [&](const SmoothFunction& function, std::size_t first) {
+        const PairForm* const q = row.coordinates.data() + first;
+        const auto knows = [&](int wanted) {
+            return std::any_of(q, q + function.n,
+                               [&](const PairForm& form) { return touches(form, wanted); });
+        };
+        if (!knows(body) || !knows(other)) return;
+        const SmoothFunction::Value F = function.at(function_point(row, function, first, X));
+        for (std::size_t k = 0; k < function.n; ++k)
+            for (std::size_t l = 0; l < function.n; ++l)
+                if (F.hessian[k][l] != 0 && touches(q[k], body) && touches(q[l], other))
+                    H += F.hessian[k][l] * outer(by(q[k], body), by(q[l], other));
+    });
     return H;
 }
 
@@ -186,8 +194,10 @@ double constraint_change(const ConstraintRow& row, Instant from, const Configura
         change += after * change_of(drive.form, row.body_i, row.body_j) +
                   (after - before) * form_value(drive.form, row.body_i, row.body_j, X_from);
     }
-    if (row.function)
-        change += row.function->after(coordinates(row, X_from), of_coordinates(row, change_of)).value;
+    for_each_function(row, [&](const SmoothFunction& F, std::size_t first) {
+        change +=
+            F.after(function_point(row, F, first, X_from), of_coordinates(row, F, first, change_of)).value;
+    });
     return change;
 }
 
@@ -213,12 +223,14 @@ double constraint_curvature(const ConstraintRow& row, Instant at, const Configur
         curvature += 2 * f.first * form_rate(drive.form, row.body_i, row.body_j, X, V) +
                      f.second * form_value(drive.form, row.body_i, row.body_j, X);
     }
-    if (!row.function) return curvature;
-    const SmoothFunction::Value F = row.function->at(coordinates(row, X));
-    const auto rates =
-        of_coordinates(row, [&](const auto& form, int i, int j) { return form_rate(form, i, j, X, V); });
-    for (std::size_t k = 0; k < rates.size(); ++k)
-        for (std::size_t l = 0; l < rates.size(); ++l) curvature += rates[k] * F.hessian[k][l] * rates[l];
+    for_each_function(row, [&](const SmoothFunction& function, std::size_t first) {
+        const SmoothFunction::Value F = function.at(function_point(row, function, first, X));
+        const SmoothFunction::Point rates =
+            of_coordinates(row, function, first,
+                           [&](const auto& form, int i, int j) { return form_rate(form, i, j, X, V); });
+        for (std::size_t k = 0; k < function.n; ++k)
+            for (std::size_t l = 0; l < function.n; ++l) curvature += rates[k] * F.hessian[k][l] * rates[l];
+    });
     return curvature;
 }
 

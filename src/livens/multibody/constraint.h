@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every ideal joint is a few rows, nearly all of them quadratic forms in X; one row is data. Drives make it
-// depend on time, and a smooth function of forms couples joint coordinates.
+// depend on time, and smooth functions of forms couple joint coordinates.
 #pragma once
 
 #include <algorithm>
@@ -47,7 +47,7 @@ struct Drive {
 
 /// A smooth function of a few numbers q, which are forms; see joint_coordinates.h.
 struct SmoothFunction {
-    static constexpr int most = 6;
+    static constexpr std::size_t most = 3;
     using Point = std::array<double, most>;
     struct Value {
         double value = 0;
@@ -58,6 +58,7 @@ struct SmoothFunction {
     /// Of each step derivatives at from + step, and for the value F(from + step) - F(from) along the straight
     /// way: angles turn on, also where their value at a point begins again.
     std::function<void(const Point& from, std::span<const Point> steps, std::span<Value> out)> moved;
+    std::size_t n = 1;   ///< numbers that it is of
 
     Value after(const Point& from, const Point& step) const
     {
@@ -73,18 +74,21 @@ struct FunctionGuard {
     std::function<double(const SmoothFunction::Point& q)> value;
 };
 
-/// One scalar constraint, Phi(t, X) = form + sum_k f_k(t) form_k + F(q_1, q_2, ..): a quadratic form, whose
-/// C, B and c may depend on time, and a smooth function of forms q_k, which may have bodies of their own.
+/// One scalar constraint, Phi(t, X) = form + sum_k f_k(t) form_k + sum_m F_m(q_1, ..): a quadratic form,
+/// whose C, B and c may depend on time, and smooth functions of forms q, which may have bodies of their own.
+/// Each function is of few forms, so that a row of many coordinates costs as much as its terms.
 struct ConstraintRow : PairForm {
     double scale = 1;    ///< a violation |Phi| is reported as |Phi| / scale: a length, its square, or 1
     std::string label;   ///< what the row holds: "x", "axis 1", "distance"
-    std::vector<Drive> drives{};                ///< on the bodies of the form
-    std::vector<PairForm> coordinates{};        ///< q_k, at most SmoothFunction::most
-    std::optional<SmoothFunction> function{};   ///< F
-    std::optional<FunctionGuard> guard{};       ///< of F; one row of a joint has it for all
+    std::vector<Drive> drives{};               ///< on the bodies of the form
+    std::vector<PairForm> coordinates{};       ///< q of F_1, then those of F_2, ..
+    std::vector<SmoothFunction> functions{};   ///< F_m
+    double period =
+        0;   ///< Phi is known up to whole multiples of it, and is the one nearest to 0; 0: it is known
+    std::optional<FunctionGuard> guard{};   ///< of F_1; one row of a joint has it for all
 
     /// Whether the row is a quadratic form alone.
-    bool is_quadratic() const { return drives.empty() && !function; }
+    bool is_quadratic() const { return drives.empty() && functions.empty(); }
 };
 
 /// X of the world: origin and axes.
@@ -111,9 +115,11 @@ private:
 
 /// The bodies that a row touches, each once and without the world.
 struct RowBodies {
-    static constexpr int most = 4;
+    static constexpr int most = 64;
     int size = 0;
-    std::array<int, most> bodies{};
+    std::array<int, most> bodies;   ///< so many of them
+
+    RowBodies() {}   // most rows touch two: the others are not written
 
     const int* begin() const { return bodies.data(); }
     const int* end() const { return bodies.data() + size; }
@@ -125,7 +131,13 @@ RowBodies row_bodies(const ConstraintRow& row);
 /// The gradient of a row by X of each of its bodies.
 struct RowGradient {
     RowBodies bodies;
-    std::array<Matrix34, RowBodies::most> by{};
+    std::array<Matrix34, RowBodies::most> by;   ///< as many as bodies
+
+    /// Zero.
+    explicit RowGradient(const ConstraintRow& row) : bodies(row_bodies(row))
+    {
+        std::fill_n(by.begin(), bodies.size, Matrix34{});
+    }
 
     /// Zero for a body that the row does not touch.
     Matrix34 of(int body) const
@@ -162,8 +174,12 @@ ConstraintRow frozen(const ConstraintRow& row, Instant at);
 double constraint_value(const ConstraintRow& row, const Configurations& X);
 RowGradient constraint_gradient(const ConstraintRow& row, const Configurations& X);
 
-/// The numbers q_k of a row's function.
-SmoothFunction::Point function_point(const ConstraintRow& row, const Configurations& X);
+/// The numbers q of one function of a row, the first of which is coordinate `first`.
+SmoothFunction::Point function_point(const ConstraintRow& row, const SmoothFunction& F, std::size_t first,
+                                     const Configurations& X);
+/// act(F, first) of all functions of a row.
+template <typename Act>
+void for_each_function(const ConstraintRow& row, const Act& act);
 /// The gradient of a form by X of its bodies, zero by that of the world.
 struct FormGradient {
     Matrix34 i{}, j{};
@@ -207,14 +223,27 @@ ConstraintRow driven_angle_branch(int body_i, const Vector4& a, int body_j, cons
 std::vector<ConstraintRow> rigidity_rows(int body);
 
 template <typename Act>
+void for_each_function(const ConstraintRow& row, const Act& act)
+{
+    std::size_t first = 0;
+    for (const SmoothFunction& F : row.functions) {
+        act(F, first);
+        first += F.n;
+    }
+}
+
+template <typename Act>
 void for_each_form(const ConstraintRow& row, Instant at, const Configurations& X, const Act& act)
 {
     act(row, row.body_i, row.body_j, 1.0);
     for (const Drive& drive : row.drives) act(drive.form, row.body_i, row.body_j, drive.factor(at).value);
-    if (!row.function) return;
-    const SmoothFunction::Value F = row.function->at(function_point(row, X));
-    for (std::size_t k = 0; k < row.coordinates.size(); ++k)
-        act(row.coordinates[k], row.coordinates[k].body_i, row.coordinates[k].body_j, F.gradient[k]);
+    for_each_function(row, [&](const SmoothFunction& function, std::size_t first) {
+        const SmoothFunction::Value F = function.at(function_point(row, function, first, X));
+        for (std::size_t k = 0; k < function.n; ++k) {
+            const PairForm& q = row.coordinates[first + k];
+            act(q, q.body_i, q.body_j, F.gradient[k]);
+        }
+    });
 }
 
 }   // namespace gnu::visibility("default")]]livens

@@ -19,8 +19,8 @@ namespace {
 using Point = SmoothFunction::Point;
 using Value = SmoothFunction::Value;
 
-/// A row of a function of forms, on the bodies of the first.
-ConstraintRow row_of(std::vector<PairForm> coordinates, SmoothFunction function, double scale,
+/// A row of functions of forms, on the bodies of the first.
+ConstraintRow row_of(std::vector<PairForm> coordinates, std::vector<SmoothFunction> functions, double scale,
                      const std::string& label)
 {
     ConstraintRow row;
@@ -29,7 +29,7 @@ ConstraintRow row_of(std::vector<PairForm> coordinates, SmoothFunction function,
     row.scale = scale;
     row.label = label;
     row.coordinates = std::move(coordinates);
-    row.function = std::move(function);
+    row.functions = std::move(functions);
     return row;
 }
 
@@ -57,78 +57,66 @@ double rate_of(const PairForm& form, std::span<const Matrix34> X, std::span<cons
 
 // --- couplings
 
-/// Where the forms of a term stand among the numbers of a row.
-struct Term {
-    double factor;
-    std::size_t at;
-    bool is_angle;
-};
-
-/// The largest number of which all factors are whole multiples, by Euclid's algorithm; 0: none of at most
-/// 10,000 parts.
-double common_measure(const std::vector<Term>& terms)
+/// The largest number of which the factors of all angles are whole multiples, by Euclid's algorithm; 0: none
+/// of at most 10,000 parts.
+double common_measure(const std::vector<CoupledCoordinate>& terms)
 {
     constexpr double rounding = 1e-11;   // of the largest factor: what decimals of a ratio leave
     double measure = 0, largest = 0;
-    for (const Term& term : terms) {
-        if (!term.is_angle) continue;
-        double rest = std::abs(term.factor);
+    for (const auto& [factor, coordinate] : terms) {
+        if (!coordinate.is_angle()) continue;
+        double rest = std::abs(factor);
         largest = std::max(largest, rest);
         // Remainders of Euclid's algorithm: what is left below rounding counts as zero.
         while (rest > rounding * largest)
             measure = std::exchange(rest, std::abs(std::remainder(measure, rest)));
     }
-    return measure * 10000 >= largest ? measure : 0;
+    return std::round(largest / measure) <= 10000 ? measure : 0;
 }
 
-Value angle_at(double c, double s)
+Value angle_at(double factor, double c, double s)
 {
     const double square = c * c + s * s, quartic = square * square;
     Value angle;
-    angle.value = arc_tangent(s, c);
+    angle.value = factor * arc_tangent(s, c);
     // Of atan2(s, c) off the unit circle as well: between the nodes of an element s^2 + c^2 is not one.
-    angle.gradient[0] = -s / square;
-    angle.gradient[1] = c / square;
-    angle.hessian[0][0] = 2 * c * s / quartic;
-    angle.hessian[0][1] = angle.hessian[1][0] = (s * s - c * c) / quartic;
-    angle.hessian[1][1] = -2 * c * s / quartic;
+    angle.gradient[0] = factor * (-s / square);
+    angle.gradient[1] = factor * (c / square);
+    angle.hessian[0][0] = factor * (2 * c * s / quartic);
+    angle.hessian[0][1] = angle.hessian[1][0] = factor * ((s * s - c * c) / quartic);
+    angle.hessian[1][1] = factor * (-2 * c * s / quartic);
     return angle;
 }
 
-Value coupling_at(const std::vector<Term>& terms, double constant, double period, const Point& q)
+/// Angles take the shorter way round.
+SmoothFunction multiple_of_angle(double factor)
 {
-    Value sum;
-    sum.value = -constant;
-    for (const auto& [factor, k, is_angle] : terms) {
-        if (!is_angle) {
-            sum.value += factor * q[k];
-            sum.gradient[k] += factor;
-            continue;
-        }
-        const Value angle = angle_at(q[k], q[k + 1]);
-        sum.value += factor * angle.value;
-        for (std::size_t i = 0; i < 2; ++i) {
-            sum.gradient[k + i] += factor * angle.gradient[i];
-            for (std::size_t j = 0; j < 2; ++j) sum.hessian[k + i][k + j] += factor * angle.hessian[i][j];
-        }
-    }
-    // After a whole turn of every angle the bodies stand as before; all the multiples of this period are one
-    // position.
-    if (period > 0) sum.value = std::remainder(sum.value, period);
-    return sum;
+    return {[factor](const Point& q) { return angle_at(factor, q[0], q[1]); },
+            [factor](const Point& q, std::span<const Point> steps, std::span<Value> out) {
+                for (std::size_t i = 0; i < steps.size(); ++i) {
+                    const double c = q[0] + steps[i][0], s = q[1] + steps[i][1];
+                    out[i] = angle_at(factor, c, s);
+                    // The angle between two directions by their cross and inner product: no difference of two
+                    // angles, so no cut and no cancellation.
+                    out[i].value =
+                        factor * arc_tangent(q[0] * steps[i][1] - q[1] * steps[i][0], q[0] * c + q[1] * s);
+                }
+            },
+            2};
 }
 
-/// Angles take the shorter way round.
-double coupling_change(const std::vector<Term>& terms, const Point& q, const Point& step)
+SmoothFunction multiple(double factor)
 {
-    double sum = 0;
-    for (const auto& [factor, k, is_angle] : terms) {
-        const double c = q[k], s = is_angle ? q[k + 1] : 0, dc = step[k], ds = is_angle ? step[k + 1] : 0;
-        // The angle between two directions by their cross and inner product: no difference of two angles, so
-        // no cut and no cancellation.
-        sum += factor * (is_angle ? arc_tangent(c * ds - s * dc, c * (c + dc) + s * (s + ds)) : dc);
-    }
-    return sum;
+    const auto at = [factor](double q) {
+        Value value;
+        value.value = factor * q;
+        value.gradient[0] = factor;
+        return value;
+    };
+    return {[at](const Point& q) { return at(q[0]); },
+            [at](const Point&, std::span<const Point> steps, std::span<Value> out) {
+                for (std::size_t i = 0; i < steps.size(); ++i) out[i] = at(steps[i][0]);
+            }};
 }
 
 // --- curves
@@ -276,44 +264,33 @@ double turned_to(double angle, double near)
     return angle + turn * std::round((near - angle) / turn);
 }
 
-ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& coupled, double constant, double scale,
+ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& terms, double constant, double scale,
                            const std::string& label)
 {
     std::vector<PairForm> forms;
-    std::vector<Term> terms;
+    std::vector<SmoothFunction> functions;
     bool has_angles = false;
-    for (const auto& [factor, coordinate] : coupled) {
+    for (const auto& [factor, coordinate] : terms) {
         if (!std::isfinite(factor) || factor == 0)
             refuse("joint-row", "the factor of a coordinate must be finite and not zero", to_text(factor), "",
                    "", "");
-        terms.push_back({factor, forms.size(), coordinate.is_angle()});
         forms.insert(forms.end(), coordinate.forms.begin(), coordinate.forms.end());
+        functions.push_back(coordinate.is_angle() ? multiple_of_angle(factor) : multiple(factor));
         has_angles = has_angles || coordinate.is_angle();
     }
-    if (forms.empty() || forms.size() > SmoothFunction::most)
-        refuse("joint-row",
-               "a row couples at least one coordinate, and three angles or six displacements at most",
-               std::to_string(forms.size()) + " forms", "1 to " + std::to_string(SmoothFunction::most), "",
-               "");
-    // The period of the sum exists only for ratios of whole numbers: each angle is known up to whole turns.
+    if (forms.empty()) refuse("joint-row", "a row couples at least one coordinate", "", "", "", "");
+    // After a whole turn of every angle the bodies stand as before; all the multiples of this period are one
+    // position. It exists only for ratios of whole numbers: each angle is known up to whole turns.
     const double measure = common_measure(terms);
     if (has_angles && measure == 0)
         refuse("gear-ratio", "the angles of a coupling turn in no ratio of whole numbers up to 10000", "", "",
                "after one turn of one wheel the other would stand where no tooth is, so positions do not "
                "tell whether the constraint holds",
                "give the ratio of two numbers of teeth");
-    const double period = 2 * std::numbers::pi * measure;
-    return row_of(forms,
-                  {[=](const Point& q) { return coupling_at(terms, constant, period, q); },
-                   [=](const Point& q, std::span<const Point> steps, std::span<Value> out) {
-                       for (std::size_t i = 0; i < steps.size(); ++i) {
-                           Point there = q;
-                           for (std::size_t k = 0; k < there.size(); ++k) there[k] += steps[i][k];
-                           out[i] = coupling_at(terms, 0, 0, there);
-                           out[i].value = coupling_change(terms, q, steps[i]);
-                       }
-                   }},
-                  scale, label);
+    ConstraintRow row = row_of(std::move(forms), std::move(functions), scale, label);
+    row.period = 2 * std::numbers::pi * measure;
+    row.c = -constant;
+    return row;
 }
 
 std::vector<ConstraintRow> curve_rows(const Curve& curve, int body_i, int body_j, const Vector4& b,
@@ -340,7 +317,8 @@ std::vector<ConstraintRow> curve_rows(const Curve& curve, int body_i, int body_j
                 out[i].value -= before;
             }
         };
-        rows.push_back(row_of(place, {at, moved}, scale, k == 0 ? "curve, normal 1" : "curve, normal 2"));
+        rows.push_back(
+            row_of(place, {{at, moved, 3}}, scale, k == 0 ? "curve, normal 1" : "curve, normal 2"));
     }
     if (!curve.knots.empty())
         rows[0].guard = {{curve.knots, curve.is_closed ? curve.last - curve.first : 0},

@@ -72,7 +72,7 @@ struct CoupledCoordinate {
 /// value takes the nearest, and the solver follows it through time without a jump.
 ///
 /// Throws InputError: `gear-ratio` for factors without a common measure of at most 10,000 parts; `joint-row`
-/// for no coordinate, more forms than SmoothFunction::most, a factor that is zero or not finite.
+/// for no coordinate, a factor that is zero or not finite.
 ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& terms, double constant, double scale,
                            const std::string& label);
 

@@ -116,10 +116,10 @@ Joint slot(const std::string& name, int first, int second, const Curve& curve, c
 /// The coordinate of that name, or null.
 const NamedCoordinate* find_coordinate(const Joint& joint, std::string_view name);
 
-// Joints between the coordinates of two others, which stay as they are in the configuration X of all
-// bodies. 1 row; the reaction is that on the second joint's second body. Throw InputError:
-// `joint-coordinate` where a joint lacks the coordinate, `joint-factor` for zero, `joint-self` for two joints
-// of the same bodies, and what coupling_row() throws.
+// Joints between the coordinates of others, a sum of which stays as it is in the configuration X of all
+// bodies. 1 row; the reaction is that on the last joint's second body. Throw InputError: `joint-coordinate`
+// where a joint lacks the coordinate, `joint-factor` for zero, `joint-self` for two wheels that one joint
+// joins, and what coupling_row() throws.
 
 /// The angle of the second changes by `ratio` times that of the first: negative where wheels mesh outside.
 Joint gear(const std::string& name, const Joint& first, const Joint& second, double ratio,
@@ -127,5 +127,17 @@ Joint gear(const std::string& name, const Joint& first, const Joint& second, dou
 /// The displacement of the rack changes by `radius` (m, either sign) times the angle of the pinion.
 Joint rack_and_pinion(const std::string& name, const Joint& pinion, const Joint& rack, double radius,
                       const Configurations& X, double scale = 1);
+
+/// A coordinate of a joint, "angle" (rad) or "displacement" (m), and what it is multiplied by.
+struct CoupledJoint {
+    double factor = 0;
+    const Joint* joint = nullptr;
+    std::string coordinate = {};
+};
+/// sum_k factor_k coordinate_k stays as it is: joints that follow others, tendons, differentials, pulleys.
+/// `length`: of the model, by which displacements are measured beside angles. Also throws InputError
+/// `coupling-terms` for less than two coordinates, one of them twice, and more than RowBodies::most bodies.
+Joint coupling(const std::string& name, const std::vector<CoupledJoint>& terms, const Configurations& X,
+               double length = 1);
 
 }   // namespace gnu::visibility("default")]]livens

@@ -165,12 +165,16 @@ void check_drive(const Drive& drive, double scale, const std::string& path)
 /// Forms with bodies of their own, which need not be the joint's: gears turn about other joints.
 void check_coordinates(const ConstraintRow& row, const std::vector<Body>& bodies, const std::string& path)
 {
-    if (row.function ? row.coordinates.empty() || !row.function->at || !row.function->moved
-                     : !row.coordinates.empty())
-        refuse("joint-row", path, "a row needs coordinates and a function of them, or none of both");
-    if (row.coordinates.size() > SmoothFunction::most)
-        refuse("joint-row", path,
-               "a row has more than " + std::to_string(SmoothFunction::most) + " coordinates");
+    std::size_t n = 0;
+    for (const SmoothFunction& F : row.functions) {
+        if (!F.at || !F.moved || F.n < 1 || F.n > SmoothFunction::most)
+            refuse("joint-row", path,
+                   "a function of a row needs its values, and is of 1 to " +
+                       std::to_string(SmoothFunction::most) + " coordinates");
+        n += F.n;
+    }
+    if (n != row.coordinates.size())
+        refuse("joint-row", path, "the functions of a row are of as many coordinates as it has");
     for (const PairForm& q : row.coordinates) {
         for (const int body : {q.body_i, q.body_j})
             check_body_index(body, static_cast<int>(bodies.size()), path);
@@ -186,7 +190,9 @@ void check_row(const ConstraintRow& row, const Joint& joint, const std::vector<B
                const std::string& path)
 {
     check_coordinates(row, bodies, path);
-    const auto known = [&](int body) { return row.function || body == joint.first || body == joint.second; };
+    const auto known = [&](int body) {
+        return !row.functions.empty() || body == joint.first || body == joint.second;
+    };
     for (const int body : {row.body_i, row.body_j})
         check_body_index(body, static_cast<int>(bodies.size()), path);
     if (!known(row.body_i) && row.body_i != world)

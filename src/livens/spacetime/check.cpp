@@ -71,12 +71,12 @@ void refuse_special_rows(const Model& model, const Method& method)
         throw InputError({"drives-method", "method.family", "the method " + name + " cannot follow drives",
                           name, "lobatto or radau", "", "use lobatto for joints that depend on time"});
     for (int r = 0; r < model.n_rows(); ++r)
-        if (model.row(r).function)
+        if (!model.row(r).functions.empty())
             throw InputError({"joint-method", "method.family",
                               "the method " + name + " cannot hold " + model.row_name(r), name,
                               "lobatto or radau",
                               "its rows must be quadratic forms of the bodies' positions and directors",
-                              "use lobatto for screws, gears and slots"});
+                              "use lobatto for screws, couplings, gears and slots"});
 }
 
 /// Where forces follow the motion, vibrations and laws that bend make errors that add up from element to

@@ -82,7 +82,7 @@ void SmallMotions::add_constraints(TwistTerms& terms) const
     for (int c = 0; c < tables_.n_rows(); ++c) {
         if (lambda[c] == 0) continue;
         const RowTable& row = tables_.rows[c];
-        double gradient[RowTables::gradient_size] = {};
+        double gradient[RowTables::gradient_size];
         tables_.rows.gradient(c, at_, state_.X.data(), gradient);
         for (int k = 0; k < row.n_sides; ++k) {
             const int i = row.bodies[k];

@@ -12,6 +12,7 @@ namespace {
 using test::expect_error;
 using test::find;
 using test::read;
+using test::replaced;
 using test::shown;
 
 /// One body on a joint `j` to the world.
@@ -188,6 +189,56 @@ std::vector<test::Case> cases_of_joints()
          "\"k\""}};
 }
 
+/// A coupling `k` of the hinges `j` and `l`.
+std::string coupled(const std::string& terms)
+{
+    return other("type = \"coupling\"\nterms = " + terms +
+                 "\n[[body]]\nname = \"c\"\nmass = 1\ninertia = [1, 1, 1]\n"
+                 "[[joint]]\nname = \"l\"\ntype = \"revolute\"\nbetween = [\"world\", \"c\"]\n"
+                 "at = [0, 0, 0]\naxis = [0, 0, 1]");
+}
+
+std::vector<test::Case> cases_of_couplings()
+{
+    return {{"coupling-terms", coupled("{}"), "{}"},
+            {"coupling-terms", coupled("{ \"j.angle\" = 1 }"), "{ \"j"},
+            {"joint-factor", coupled("{ \"j.angle\" = 1, \"l.angle\" = 0 }"), "{ \"j"},
+            {"joint-coordinate", coupled("{ \"j.angle\" = 1, \"l.displacement\" = 1 }"), "{ \"j"},
+            {"joint-coordinate", coupled("{ \"j.angle\" = 1, l = 1 }"), "l = 1"},
+            {"joint-unknown", coupled("{ \"j.angle\" = 1, \"jj.angle\" = 1 }"), "\"jj"},
+            {"joint-unknown", coupled("{ \"j.angle\" = 1, \"k.angle\" = 1 }"), "\"k.a"},
+            {"gear-ratio", coupled("{ \"j.angle\" = 1, \"l.angle\" = 3.14159265358979 }"), "\"k\""},
+            {"unit", coupled("{ \"j.angle\" = \"5 cm\", \"l.angle\" = \"2 s\" }"), "\"2 s\""},
+            {"not-finite", coupled("{ \"j.angle\" = inf, \"l.angle\" = 1 }"), "inf"},
+            {"wrong-type", coupled("{ \"j.angle\" = true, \"l.angle\" = 1 }"), "true"},
+            {"missing-key", other("type = \"coupling\""), "[[joint]]\nname = \"k\""}};
+}
+
+TEST(MechanismScenario, CouplingsTellWhatWasMeant)
+{
+    // A joint's name that stands without quotes is a table in TOML.
+    const ScenarioResult bare = read(coupled("{ j.angle = 1, l.angle = 1 }"));
+    ASSERT_NE(find(bare, "wrong-type"), nullptr) << shown(bare);
+    EXPECT_NE(find(bare, "wrong-type")->help.find("\"j.angle\" = "), std::string::npos) << shown(bare);
+}
+
+TEST(MechanismScenario, FactorsOfACouplingAreNumbersQuantitiesAndFormulas)
+{
+    const ScenarioResult result =
+        read(replaced(coupled("{ \"j.angle\" = \"-2*r\", \"l.angle\" = \"10 cm\" }"), "format = 1\n",
+                      "format = 1\n[parameters]\nr = \"5 cm\"\n"));
+    ASSERT_TRUE(result.scenario) << shown(result);
+    EXPECT_TRUE(result.diagnostics.empty()) << shown(result);
+    const Joint& joint = result.scenario->model.joints().back();
+    EXPECT_EQ(joint.type, "coupling");
+    const auto turned = [](double a) { return configuration({}, directors_from_rotation_vector({0, 0, a})); };
+    EXPECT_NEAR(constraint_value(joint.rows[0], std::vector{turned(0.3), turned(0.5)}), 0.02, 1e-15);
+    const ScenarioResult unnamed =
+        read(replaced(coupled("{ \"j.angle\" = 1, \"l.angle\" = 2 }"), "name = \"k\"\n", ""));
+    ASSERT_TRUE(unnamed.scenario) << shown(unnamed);
+    EXPECT_EQ(unnamed.scenario->model.joints().back().name, "coupling j.angle-l.angle");
+}
+
 std::vector<test::Case> cases_along_joints()
 {
     const std::string twice = "{ joint = \"j\", value = 1 }, ";
@@ -251,7 +302,7 @@ std::vector<test::Case> cases_along_joints()
 std::vector<test::Case> test::cases_of_mechanisms()
 {
     std::vector<Case> all = cases_of_joints();
-    for (const std::vector<Case>& more : {cases_along_joints(), cases_of_joint_loads()})
+    for (const std::vector<Case>& more : {cases_along_joints(), cases_of_couplings(), cases_of_joint_loads()})
         all.insert(all.end(), more.begin(), more.end());
     return all;
 }

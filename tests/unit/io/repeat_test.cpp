@@ -108,6 +108,20 @@ TEST(Repeat, IsTheSameAsWritingItOut)
     EXPECT_EQ(a.loads().size(), b.loads().size());
 }
 
+TEST(Repeat, NamesAndFactorsOfCouplingsHaveTheIndex)
+{
+    const ScenarioResult result = read(replaced(chain, "[[repeat.load]]", R"([[repeat.joint]]
+name = "follow {i}"
+type = "coupling"
+terms = { "pin {i}.angle" = "-i/2", "pin {i-1}.angle" = 1 }
+[[repeat.load]])"));
+    ASSERT_TRUE(result.scenario) << shown(result);
+    const std::vector<Joint>& joints = result.scenario->model.joints();
+    ASSERT_EQ(joints.size(), 7u);
+    EXPECT_EQ(joints[6].name, "follow 3");
+    EXPECT_EQ(joints[6].rows[0].scale, 1.5);
+}
+
 TEST(Repeat, CountsFromAnyFirstIndexUnderAnyName)
 {
     const std::string text = R"(format = 1

@@ -218,7 +218,7 @@ TEST(Schema, LONG_EveryValueOfAnotherTypeIsAnErrorAtTheValue)
                 std::any_of(result.diagnostics.begin(), result.diagnostics.end(), [&](const Diagnostic& d) {
                     return d.line == static_cast<int>(o.line) + 1 && d.column >= o.value_column() &&
                            (d.code == "wrong-type" || d.code == "unit" || d.code == "unknown-key" ||
-                            d.code == "point-unknown");
+                            d.code == "point-unknown" || d.code == "joint-unknown");
                 });
             EXPECT_TRUE(is_told) << o.with_value(wrong) << shown(result);
         }

@@ -260,10 +260,27 @@ TEST(Urdf, MimicsOfEveryPairOfKindsAreCoupled)
             options.rates = {{"lead", 1}};
             const UrdfResult result = read_robot(chain(first, second, mimic), options);
             ASSERT_TRUE(result.scenario) << told(result);
-            const bool are_slides = first == std::string("prismatic") && second == std::string("prismatic");
-            EXPECT_EQ(n_told(result, "import-mended", "racks"), are_slides ? 1 : 0);
-            EXPECT_NE(result.toml.find("name = \"follow\""), std::string::npos);
+            const auto coordinate = [](const std::string& kind) {
+                return kind == "prismatic" ? ".displacement" : ".angle";
+            };
+            EXPECT_NE(result.toml.find(std::string("terms = { \"lead") + coordinate(first) +
+                                       "\" = 2.0, \"follow" + coordinate(second) + "\" = 1.0 }"),
+                      std::string::npos)
+                << result.toml;
+            EXPECT_EQ(result.scenario->model.joints().size(), 3u);
+            EXPECT_EQ(result.scenario->model.n_bodies(), 2);
         }
+    // Angles are coupled in ratios of whole numbers; what is none is changed in the ninth digit, and told.
+    for (const auto& [multiplier, n_changed] : {std::pair{"-1.13125", 0}, {"0.725676731", 1}}) {
+        const UrdfResult turned =
+            read_robot(chain("continuous", "revolute",
+                             ("<mimic joint='lead' multiplier='" + std::string(multiplier) + "'/>").c_str()));
+        ASSERT_TRUE(turned.scenario) << told(turned);
+        EXPECT_EQ(n_told(turned, "import-mended", "ratio of whole numbers"), n_changed) << multiplier;
+        const std::size_t at = turned.toml.find("\"lead.angle\" = ");
+        ASSERT_NE(at, std::string::npos) << turned.toml;
+        EXPECT_NEAR(std::stod(turned.toml.substr(at + 15)), -std::stod(multiplier), 1e-8);
+    }
     const UrdfResult held =
         read_robot(chain("revolute", "revolute", "<mimic joint='lead' multiplier='0' offset='1'/>"));
     ASSERT_TRUE(held.scenario) << told(held);

@@ -2,6 +2,8 @@
 // Rows that follow functions of time and of coordinates, by the march kernel against Newton's iteration.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "livens/multibody/joints.h"
 #include "livens/multibody/joints/drives.h"
 #include "livens/multibody/joints/spline_curve.h"
@@ -12,7 +14,7 @@
 namespace livens {
 namespace {
 
-/// A drive of a coordinate, a distance or a point, a slot, or a gear.
+/// A drive of a coordinate, a distance or a point, a slot, or a coupling of some coordinates.
 void add_function(Random& random, Model& model)
 {
     const std::vector<Matrix34> X = model.start().X;
@@ -22,10 +24,15 @@ void add_function(Random& random, Model& model)
     const auto law = [&](double now, double size) {
         return shifted(harmonic(size, 3, random.number()), now);
     };
-    std::vector<const Joint*> turning;
+    std::vector<CoupledJoint> coupled;
+    Random own(
+        static_cast<unsigned>(7 + model.joints().size()));   // factors leave the mechanisms as they are
     for (const Joint& joint : model.joints())
         for (const NamedCoordinate& q : joint.coordinates) {
-            if (q.name == "angle") turning.push_back(&joint);
+            const double factor = own.number();
+            if (own.number() > -0.5)
+                coupled.push_back({q.name == "angle" ? 0.5 + std::floor(2 * (1 + factor)) : 1 + factor / 2,
+                                   &joint, q.name});
             if (kind != 0) continue;
             const TimeFunction motion = law(0, 0.4);
             model.add_joint(
@@ -44,8 +51,8 @@ void add_function(Random& random, Model& model)
         for (int k = -3; k <= 3; ++k) points.push_back(X_last.column(0) + 0.4 * k * e + 0.1 * k * k * n);
         model.add_joint(
             slot("slot", world, last, spline_curve(points, false), {}, world_configuration, X_last));
-    } else if (turning.size() >= 2) {
-        model.add_joint(gear("gear", *turning[0], *turning[1], 1.5, X));
+    } else if (coupled.size() >= 2) {
+        model.add_joint(coupling("coupling", coupled, X, model.length()));
     }
 }
 

@@ -2,23 +2,27 @@
 #include "livens/dynamics/lanes/row_forms.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace livens::inline dynamics_internal {
 
-void RowForms::add(const ConstraintRow& row)
-{
-    Row made{n_forms_, {}, static_cast<int>(row.coordinates.size()), row.function};
-    for (const Drive& drive : row.drives) made.factors.push_back(drive.factor);
-    n_forms_ = made.first_coordinate() + made.n_coordinates;
-    rows_.push_back(std::move(made));
-}
+namespace {
 
-SmoothFunction::Value RowForms::function_at(const Row& row, const double* forms) const
+SmoothFunction::Value value_at(const SmoothFunction& F, const double* forms)
 {
     SmoothFunction::Point q{};
-    for (int k = 0; k < row.n_coordinates; ++k)
-        q[static_cast<std::size_t>(k)] = forms[row.first_coordinate() + k];
-    return row.function->at(q);
+    std::copy_n(forms, F.n, q.begin());
+    return F.at(q);
+}
+
+}   // namespace
+
+void RowForms::add(const ConstraintRow& row)
+{
+    Row made{n_forms_, {}, row.functions, row.period, row.c};
+    for (const Drive& drive : row.drives) made.factors.push_back(drive.factor);
+    n_forms_ = made.first_coordinate() + static_cast<int>(row.coordinates.size());
+    rows_.push_back(std::move(made));
 }
 
 void RowForms::weigh_at(Instant at, const lanes::Values& one) const
@@ -32,12 +36,14 @@ void RowForms::weigh_at(Instant at, const lanes::Values& one) const
             *sum += one.forms.weights[form] * one.forms.values[form];
             ++form;
         }
-        if (row.function) {
-            const SmoothFunction::Value F = function_at(row, one.forms.values);
+        for (const SmoothFunction& function : row.functions) {
+            const SmoothFunction::Value F = value_at(function, one.forms.values + form);
             *sum += F.value;
-            for (int k = 0; k < row.n_coordinates; ++k)
-                one.forms.weights[form + k] = F.gradient[static_cast<std::size_t>(k)];
+            std::copy_n(F.gradient.begin(), function.n, one.forms.weights + form);
+            form += static_cast<int>(function.n);
         }
+        // of the whole row, whose constant is not among the forms
+        if (row.period > 0) *sum = std::remainder(*sum + row.constant, row.period) - row.constant;
         ++sum;
     }
 }
@@ -57,22 +63,23 @@ void RowForms::weigh_nodes(std::span<const double> times, const lanes::Values& s
     }
 }
 
-/// F of the coordinates of all lanes: change += its own, and its gradient are their weights.
-void RowForms::add_function(const Row& row, const lanes::Values& start, const lanes::Values& nodes, int width,
-                            double* change)
+/// F of its coordinates, from form `first` on, in all lanes: change += its own, and its gradient are their
+/// weights.
+void RowForms::add_function(const SmoothFunction& F, int first, const lanes::Values& start,
+                            const lanes::Values& nodes, int width, double* change)
 {
     constexpr int most = 8;   // lanes at a time
     SmoothFunction::Point from{}, steps[most]{};
     SmoothFunction::Value after[most];
-    const int first = row.first_coordinate(), n = row.n_coordinates;
-    for (int k = 0; k < n; ++k) from[static_cast<std::size_t>(k)] = start.forms.values[first + k];
+    const int n = static_cast<int>(F.n);
+    std::copy_n(start.forms.values + first, n, from.begin());
     for (int l = 0; l < width; l += most) {
         const int count = std::min(most, width - l);
         for (int k = 0; k < n; ++k)
             for (int i = 0; i < count; ++i)
                 steps[i][static_cast<std::size_t>(k)] = nodes.forms.values[(first + k) * width + l + i];
         const auto n_steps = static_cast<std::size_t>(count);
-        row.function->moved(from, {steps, n_steps}, {after, n_steps});
+        F.moved(from, {steps, n_steps}, {after, n_steps});
         for (int i = 0; i < count; ++i) {
             change[l + i] += after[i].value;
             for (int k = 0; k < n; ++k)
@@ -98,7 +105,11 @@ void RowForms::weigh(const void* forms, const lanes::Values& start, const lanes:
                              (w - start.forms.weights[form]) * start.forms.values[form];
             }
         }
-        if (row.function) add_function(row, start, nodes, width, change);
+        int first = row.first_coordinate();
+        for (const SmoothFunction& F : row.functions) {
+            add_function(F, first, start, nodes, width, change);
+            first += static_cast<int>(F.n);
+        }
         change += width;
     }
 }
@@ -124,13 +135,15 @@ void RowForms::add_curvatures(Instant at, const lanes::Values& one, const double
             sum += f.value * second[form] + 2 * f.first * first[form] + f.second * one.forms.values[form];
             ++form;
         }
-        if (!row.function) continue;
-        const SmoothFunction::Value F = function_at(row, one.forms.values);
-        for (int k = 0; k < row.n_coordinates; ++k) {
-            const auto a = static_cast<std::size_t>(k);
-            sum += F.gradient[a] * second[form + k];
-            for (int l = 0; l < row.n_coordinates; ++l)
-                sum += first[form + k] * F.hessian[a][static_cast<std::size_t>(l)] * first[form + l];
+        for (const SmoothFunction& function : row.functions) {
+            const SmoothFunction::Value F = value_at(function, one.forms.values + form);
+            for (std::size_t k = 0; k < function.n; ++k) {
+                sum += F.gradient[k] * second[form + static_cast<int>(k)];
+                for (std::size_t l = 0; l < function.n; ++l)
+                    sum += first[form + static_cast<int>(k)] * F.hessian[k][l] *
+                           first[form + static_cast<int>(l)];
+            }
+            form += static_cast<int>(function.n);
         }
     }
 }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows that are more than one quadratic form: Phi = form + sum_k f_k(t) form_k + F(q_1, q_2, ..), where the
-// q_k are forms too. Forms are sums over the numbers of a configuration; what makes them rows are weights.
+// Rows that are more than one quadratic form: Phi = form + sum_k f_k(t) form_k + sum_m F_m(q_1, ..), where
+// the q are forms too. Forms are sums over the numbers of a configuration; what makes them rows are weights.
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,15 +43,14 @@ private:
     struct Row {
         int first;   ///< form
         std::vector<TimeFunction> factors;
-        int n_coordinates;   ///< forms behind those with factors
-        std::optional<SmoothFunction> function;
+        std::vector<SmoothFunction> functions;   ///< of the forms behind those with factors
+        double period, constant;                 ///< ConstraintRow::period, c
 
         int first_coordinate() const { return first + static_cast<int>(factors.size()); }
     };
 
-    SmoothFunction::Value function_at(const Row& row, const double* forms) const;
-    static void add_function(const Row& row, const lanes::Values& start, const lanes::Values& nodes,
-                             int width, double* change);
+    static void add_function(const SmoothFunction& F, int first, const lanes::Values& start,
+                             const lanes::Values& nodes, int width, double* change);
 
     int n_forms_ = 0;
     std::vector<Row> rows_;

@@ -14,13 +14,14 @@ void ConstraintBasis::resize(const ModelTables& tables, bool all_rows)
     q.resize(tables.n_twists, most);
     rows.assign(static_cast<std::size_t>(tables.rank), 0);
     row_scale.assign(static_cast<std::size_t>(most), 1.0);
-    gradients.assign(static_cast<std::size_t>(RowTables::gradient_size * most), 0.0);
+    longest_gradient = tables.rows.longest_gradient();
+    gradients.assign(static_cast<std::size_t>(longest_gradient * most), 0.0);
 }
 
 double ConstraintBasis::fill(const ModelTables& tables, int column, int row, Instant at, const double* X,
                              const double* maps)
 {
-    double* g = gradients.data() + RowTables::gradient_size * column;
+    double* g = gradients.data() + longest_gradient * column;
     double* out = q.column(column);
     tables.rows.gradient(row, at, X, g);
     tables.scaled_gradient(row, X, maps, g, out);
@@ -51,8 +52,8 @@ double ConstraintBasis::choose(const ModelTables& tables, Instant at, const doub
     for (int c = 0; c < tables.rank; ++c) {
         rows[c] = order[c];
         row_scale[c] = scales[order[c]];
-        std::copy_n(unsorted.begin() + RowTables::gradient_size * order[c], RowTables::gradient_size,
-                    gradients.begin() + RowTables::gradient_size * c);
+        std::copy_n(unsorted.begin() + longest_gradient * order[c], longest_gradient,
+                    gradients.begin() + longest_gradient * c);
     }
     return smallest_pivot;
 }

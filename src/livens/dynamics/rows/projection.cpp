@@ -168,16 +168,20 @@ public:
     {
         Closing best{false, {from_.begin(), from_.end()}};
         std::vector<Matrix34> X = best.X;
-        Gap least = widest_gap(model_, X, rows_);
+        // Teeth that mesh where the bodies were stated do so however far the closing moves them.
+        std::vector<double> phi = joint_values_from(model_, joint_values(model_, given_), given_, X);
+        Gap least = widest_gap(model_, X, rows_, phi);
         int since_best = 0;
         for (int i = 0; i < 100 && since_best < 6 && (least.level > 1 || nearest); ++i) {
             // With `nearest` each step also pulls back to the given place, so the limit is a foot of the
             // perpendicular.
-            const double step = iterate(X, nearest, threshold);
+            const std::vector<Matrix34> before = X;
+            const double step = iterate(X, phi, nearest, threshold);
             if (!std::isfinite(step)) break;
+            phi = joint_values_from(model_, phi, before, X);
             // The pull leaves the rows open by its own convergence; the last steps close them without it.
             if (nearest && (step < 1e-9 || i >= 30)) nearest = false;
-            const Gap now = widest_gap(model_, X, rows_);
+            const Gap now = widest_gap(model_, X, rows_, phi);
             since_best = nearest || now.level < least.level ? 0 : since_best + 1;
             if (since_best > 0) continue;
             least = now;
@@ -190,10 +194,10 @@ public:
 private:
     /// One step, shortened so that no body turns by more than half a radian; returns its size relative to the
     /// model (1: a length, a radian).
-    double iterate(std::vector<Matrix34>& X, bool nearest, double threshold) const
+    double iterate(std::vector<Matrix34>& X, std::span<const double> phi, bool nearest,
+                   double threshold) const
     {
         const std::vector<int> rows = row_rank(model_, X, rows_, threshold).independent;
-        const std::vector<double> phi = joint_values(model_, X);
         std::vector<double> wanted;
         for (const int r : rows) wanted.push_back(-phi[r]);
         std::vector<Matrix34> back(X.size(), Matrix34{});

@@ -2,7 +2,6 @@
 #include "livens/dynamics/rows/row_tables.h"
 
 #include <algorithm>
-#include <array>
 
 namespace livens {
 
@@ -21,7 +20,8 @@ bool touches(const QuadraticForm& form, bool is_i, int column)
 
 void find_columns(const RowBodies& bodies, RowTable& table)
 {
-    std::array<std::array<bool, 4>, RowBodies::most> touched{};
+    bool touched[RowBodies::most][4];
+    std::fill_n(touched[0], 4 * bodies.size, false);
     const auto look = [&](const QuadraticForm& form, int i, int j) {
         for (int column = 0; column < 4; ++column) {
             if (i != world && touches(form, true, column)) touched[bodies.find(i)][column] = true;
@@ -32,9 +32,12 @@ void find_columns(const RowBodies& bodies, RowTable& table)
     look(row, row.body_i, row.body_j);
     for (const Drive& drive : row.drives) look(drive.form, row.body_i, row.body_j);
     for (const PairForm& q : row.coordinates) look(q, q.body_i, q.body_j);
-    for (int side = 0; side < bodies.size; ++side)
+    table.columns.resize(static_cast<std::size_t>(bodies.size));
+    for (int side = 0; side < bodies.size; ++side) {
+        RowTable::Columns& columns = table.columns[side];
         for (int column = 0; column < 4; ++column)
-            if (touched[side][column]) table.columns[side].push_back(3 * column);
+            if (touched[side][column]) columns.at[columns.n++] = 3 * column;
+    }
 }
 
 RowTable row_table(const ConstraintRow& row)
@@ -43,7 +46,7 @@ RowTable row_table(const ConstraintRow& row)
     table.row = &row;
     const RowBodies bodies = row_bodies(row);
     table.n_sides = bodies.size;
-    std::copy(bodies.begin(), bodies.end(), table.bodies);
+    table.bodies.assign(bodies.begin(), bodies.end());
     find_columns(bodies, table);
     table.is_quadratic = row.is_quadratic();
     if (!table.is_quadratic) return table;
@@ -74,6 +77,7 @@ RowTables::RowTables(const Model& model, bool with_rigidity)
             for (const ConstraintRow& row : rigidity_rows(b)) rigidity_.push_back(row);
     for (int r = 0; r < model.n_rows(); ++r) tables_.push_back(row_table(model.row(r)));
     for (const ConstraintRow& row : rigidity_) tables_.push_back(row_table(row));
+    for (const RowTable& table : tables_) longest_gradient_ = std::max(longest_gradient_, 12 * table.n_sides);
 }
 
 bool RowTables::are_quadratic() const { return std::ranges::all_of(tables_, &RowTable::is_quadratic); }

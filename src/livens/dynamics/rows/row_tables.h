@@ -12,13 +12,21 @@ namespace livens::inline dynamics_internal {
 struct RowTable {
     const ConstraintRow* row = nullptr;
     int n_sides = 0;
-    int bodies[RowBodies::most] = {};   ///< of each side
+    std::vector<int> bodies;   ///< of each side
     struct Entry {
         int from_side, from;   ///< side, and place of the column in the 12 numbers of X
         int to_side, to;
         double value;
     };
-    std::vector<int> columns[RowBodies::most];   ///< of X that the gradient may touch: 0, 3, 6, 9
+    /// Columns of X of a side that the gradient may touch: 0, 3, 6, 9.
+    struct Columns {
+        int n = 0;
+        int at[4];
+
+        const int* begin() const { return at; }
+        const int* end() const { return at + n; }
+    };
+    std::vector<Columns> columns;   ///< of each side
     /// A quadratic form alone has these tables; others are evaluated by constraint.h.
     bool is_quadratic = true;
     std::vector<Entry> form;   ///< entries of K that are not zero, by rows and columns
@@ -29,7 +37,7 @@ struct RowTable {
 /// Rows by their numbers: those of the joints of a model, then those of rigidity, if asked for.
 class RowTables {
 public:
-    /// Numbers of a gradient: 12 a side.
+    /// Most numbers of a gradient: 12 a side.
     static constexpr int gradient_size = 12 * RowBodies::most;
 
     RowTables(const Model& model, bool with_rigidity);
@@ -41,6 +49,8 @@ public:
     auto begin() const { return tables_.begin(); }
     auto end() const { return tables_.end(); }
     bool are_quadratic() const;
+    /// Numbers of the longest gradient of these rows.
+    int longest_gradient() const { return longest_gradient_; }
 
     /// Gradients of row r by X of its sides, 12 numbers each, one after the other. Only the columns that the
     /// row touches (RowTable::columns) are written, and only they may be read.
@@ -58,6 +68,7 @@ public:
 private:
     std::vector<ConstraintRow> rigidity_;
     std::vector<RowTable> tables_;
+    int longest_gradient_ = 0;
 };
 
 }   // namespace livens::inline dynamics_internal

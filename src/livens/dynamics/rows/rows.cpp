@@ -40,16 +40,16 @@ void for_each_positive_form(const ConstraintRow& row, std::span<const Matrix34> 
 }
 
 /// The gradients of the forms of a row with absolute terms, at absolute X.
-RowGradient gradient_terms(const ConstraintRow& row, const RowBodies& bodies, std::span<const Matrix34> X,
+RowGradient gradient_terms(const ConstraintRow& row, std::span<const Matrix34> X,
                            const std::vector<Matrix34>& positive)
 {
-    RowGradient terms{bodies};
+    RowGradient terms(row);
     for_each_form(row, {}, X, [&](const QuadraticForm& form, int i, int j, double weight) {
         const auto of = [&](int body) {
             return body == world ? absolute(world_configuration) : positive[body];
         };
         const auto add = [&](int body, const Matrix34& g) {
-            terms.by[bodies.find(body)] += std::abs(weight) * g;
+            terms.by[terms.bodies.find(body)] += std::abs(weight) * g;
         };
         add(j, of(j) * absolute(form.c_jj) + absolute(form.b_j));
         if (i == world) return;
@@ -100,6 +100,22 @@ std::vector<double> joint_values(const Model& model, std::span<const Matrix34> X
     return phi;
 }
 
+std::vector<double> joint_values_from(const Model& model, std::span<const double> phi,
+                                      std::span<const Matrix34> X_from, std::span<const Matrix34> X)
+{
+    std::vector<double> values = joint_values(model, X);
+    std::vector<Matrix34> step;
+    for (int r = 0; r < model.n_rows(); ++r) {
+        const ConstraintRow& row = model.row(r);
+        if (row.period == 0) continue;
+        for (std::size_t b = step.size(); b < X.size(); ++b) step.push_back(X[b] - X_from[b]);
+        const double followed = phi[r] + constraint_change(row, {}, Configurations(X_from), {},
+                                                           Configurations(X), Configurations(step));
+        values[r] += row.period * std::round((followed - values[r]) / row.period);
+    }
+    return values;
+}
+
 std::vector<double> joint_rates(const Model& model, std::span<const Matrix34> X, std::span<const Matrix34> V)
 {
     std::vector<double> rates(model.n_rows(), 0.0);
@@ -120,7 +136,12 @@ std::vector<double> drive_rates(const Model& model, Instant at, std::span<const 
 
 Gap widest_gap(const Model& model, std::span<const Matrix34> X, std::span<const int> rows)
 {
-    const std::vector<double> phi = joint_values(model, X);
+    return widest_gap(model, X, rows, joint_values(model, X));
+}
+
+Gap widest_gap(const Model& model, std::span<const Matrix34> X, std::span<const int> rows,
+               std::span<const double> phi)
+{
     const std::vector<Matrix34> positive = absolute(X);
     Gap gap;
     for (const int r : rows) {
@@ -145,7 +166,7 @@ RowWrenches row_wrenches(const Model& model, std::span<const Matrix34> X)
     for (int r = 0; r < model.n_rows(); ++r) {
         const Joint& joint = model.joints()[model.row_joint(r)];
         const RowGradient g = constraint_gradient(model.row(r), X);
-        const RowGradient terms = gradient_terms(model.row(r), g.bodies, X, positive);
+        const RowGradient terms = gradient_terms(model.row(r), X, positive);
         for (const int body : g.bodies) {
             const Vector3 at = body == joint.second  ? joint.point_second
                                : body == joint.first ? joint.point_first

@@ -16,6 +16,9 @@ std::vector<int> all_rows(const Model& model);
 
 /// Phi of the model's rows, and G V.
 std::vector<double> joint_values(const Model& model, std::span<const Matrix34> X);
+/// The same, of rows with a period those that are reached on the straight way from where they are `phi`.
+std::vector<double> joint_values_from(const Model& model, std::span<const double> phi,
+                                      std::span<const Matrix34> X_from, std::span<const Matrix34> X);
 std::vector<double> joint_rates(const Model& model, std::span<const Matrix34> X, std::span<const Matrix34> V);
 /// What drives add to dPhi/dt: zeros without drives.
 std::vector<double> drive_rates(const Model& model, Instant at, std::span<const Matrix34> X);
@@ -28,6 +31,8 @@ struct Gap {
     bool near = true;       ///< every row is at its rounding level or below 1e-9 of its scale
 };
 Gap widest_gap(const Model& model, std::span<const Matrix34> X, std::span<const int> rows);
+Gap widest_gap(const Model& model, std::span<const Matrix34> X, std::span<const int> rows,
+               std::span<const double> phi);
 
 /// What a multiplier of one does to a body: the gradient g of its row by X as a force and a moment.
 ///

@@ -33,7 +33,7 @@ public:
         for (const Matrix34& X : closed.start.X) X_.insert(X_.end(), std::begin(X.a), std::end(X.a));
         tables_.bodies.map_twists(X_.data(), maps_.data());
         const int n = tables_.n_rows();
-        gradients_.assign(static_cast<std::size_t>(RowTables::gradient_size * n), 0.0);
+        gradients_.assign(static_cast<std::size_t>(tables_.rows.longest_gradient() * n), 0.0);
         scale_.resize(static_cast<std::size_t>(n));
         Values row(static_cast<std::size_t>(tables_.n_twists));
         for (int r = 0; r < n; ++r) {
@@ -114,8 +114,8 @@ public:
     }
 
 private:
-    double* gradient(int r) { return gradients_.data() + RowTables::gradient_size * r; }
-    const double* gradient(int r) const { return gradients_.data() + RowTables::gradient_size * r; }
+    double* gradient(int r) { return gradients_.data() + tables_.rows.longest_gradient() * r; }
+    const double* gradient(int r) const { return gradients_.data() + tables_.rows.longest_gradient() * r; }
 
     ModelTables tables_;
     Instant at_;

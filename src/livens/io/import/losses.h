@@ -100,11 +100,11 @@ inline constexpr LossKind inertia{
     true,
     true};
 inline constexpr LossKind axis{"import-mended", "joint", "joints", "axis was normalised to length 1"};
-inline constexpr LossKind pinion{
+inline constexpr LossKind multiplier{
     "import-mended",
     "joint",
     "joints",
-    "coupled to another prismatic joint by two racks on a pinion of 1e-9 of the smallest mass",
+    "multiplier of mimic was changed to the nearest ratio of whole numbers up to 10000",
     "",
     false,
     true};

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 namespace livens::inline io_internal {
 
@@ -34,6 +36,24 @@ TableMaker frame_table(const Pose& pose)
     TableMaker table({});
     table.vector("point", pose.origin).rows("directors", triad(pose.axes));
     return table;
+}
+
+/// The nearest ratio of whole numbers up to 10000, which two angles that may turn round and round must have;
+/// the multiplier itself if it is one, or near none.
+double ratio_of_angles(double multiplier)
+{
+    constexpr int most = 10000;
+    constexpr double rounding = 1e-11;   // of decimals
+    const double size = std::abs(multiplier);
+    double nearest = size, least = std::numeric_limits<double>::infinity();
+    for (int q = 1; q <= most; ++q) {
+        const double p = std::round(size * q), off = std::abs(p / q - size);
+        if (p < 1 || p > most || off >= least) continue;
+        if (off <= rounding * size) return multiplier;
+        least = off;
+        nearest = p / q;
+    }
+    return std::copysign(nearest, multiplier);
 }
 
 }   // namespace
@@ -108,46 +128,31 @@ void UrdfJoints::add_loads(TableMaker& table, const PlacedJoint& placed)
     if (low > -infinity || high < infinity) table.numbers("limits", std::array{low, high});
 }
 
-/// A joint that follows another one: coordinate = multiplier times the leader's + what it is at the start.
-void UrdfJoints::couple(const PlacedJoint& placed, double pinion_mass, std::vector<TableMaker>& joints,
-                        std::vector<TableMaker>& bodies)
+/// A joint that follows another one: coordinate - multiplier times the leader's stays what it is at the
+/// start.
+TableMaker UrdfJoints::coupling(const UrdfJoint& joint)
 {
-    const UrdfJoint& joint = file_.joints[placed.joint];
     const UrdfMimic& mimic = *joint.mimic;
     const auto leader = std::ranges::find(file_.joints, mimic.joint, &UrdfJoint::name);
-    const std::string &follows = names_.at(joint.name), &leads = names_.at(mimic.joint);
-    const std::string name = unused("mimic " + joint.name);
-    if (leader->turns() && joint.turns()) {
-        joints.push_back(joint_table(mimic.place, name, "gear"));
-        joints.back().texts("joints", {leads, follows}).number("ratio", mimic.multiplier);
-        return;
-    }
-    const auto rack = [&](const std::string& of, const std::string& turns, const std::string& slides,
-                          double radius) {
-        joints.push_back(joint_table(mimic.place, of, "rack_and_pinion"));
-        joints.back().texts("joints", {turns, slides}).number("radius", radius);
+    double multiplier = mimic.multiplier;
+    if (leader->turns() && joint.turns()) multiplier = ratio_of_angles(multiplier);
+    if (multiplier != mimic.multiplier) losses_.add(losses::multiplier, mimic.place, "'" + joint.name + "'");
+    const auto coordinate = [&](const UrdfJoint& of) {
+        return names_.at(of.name) + (of.turns() ? ".angle" : ".displacement");
     };
-    if (leader->turns()) return rack(name, leads, follows, mimic.multiplier);
-    if (joint.turns()) return rack(name, follows, leads, 1 / mimic.multiplier);
-    // Of two slides: a pinion of radius 1 m stands in the world, which the leader turns.
-    const std::string pinion = unused("pinion of " + joint.name), shaft = unused("shaft of " + joint.name);
-    TableMaker body(mimic.place);
-    body.text("name", pinion).number("mass", pinion_mass).vector("inertia", pinion_mass * Vector3{1, 1, 1});
-    if (placed.rate != 0) body.vector("angular_velocity", {0, 0, placed.rate / mimic.multiplier});
-    bodies.push_back(std::move(body));
-    joints.push_back(joint_table(mimic.place, shaft, "revolute"));
-    joints.back().texts("between", {"world", pinion}).vector("at", {}).vector("axis", {0, 0, 1});
-    rack(name, shaft, leads, 1);
-    rack(unused(name + " 2"), shaft, follows, mimic.multiplier);
-    losses_.add(losses::pinion, mimic.place, "'" + joint.name + "'");
+    TableMaker terms(mimic.place);
+    terms.number(coordinate(*leader), -multiplier).number(coordinate(joint), 1);
+    TableMaker table = joint_table(mimic.place, unused("mimic " + joint.name), "coupling");
+    table.table("terms", std::move(terms));
+    return table;
 }
 
-std::vector<TableMaker> UrdfJoints::joints(double pinion_mass, std::vector<TableMaker>& bodies)
+std::vector<TableMaker> UrdfJoints::joints()
 {
     std::vector<TableMaker> all;
     for (const PlacedJoint& placed : tree_.joints) all.push_back(joint(placed));
     for (const PlacedJoint& placed : tree_.joints)
-        if (file_.joints[placed.joint].mimic) couple(placed, pinion_mass, all, bodies);
+        if (file_.joints[placed.joint].mimic) all.push_back(coupling(file_.joints[placed.joint]));
     return all;
 }
 

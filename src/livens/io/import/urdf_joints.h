@@ -20,15 +20,14 @@ public:
     /// What a body is called; -1: the world.
     const std::string& body_name(int body) const { return body_names_[body + 1]; }
 
-    /// All joints; of a slide that follows another one a pinion of this mass, which goes to the bodies.
-    std::vector<TableMaker> joints(double pinion_mass, std::vector<TableMaker>& bodies);
+    /// All joints, and couplings of those that follow others.
+    std::vector<TableMaker> joints();
     void add_loops(std::vector<TableMaker>& joints, Findings& findings);
 
 private:
     TableMaker joint(const PlacedJoint& placed);
     void add_loads(TableMaker& table, const PlacedJoint& placed);
-    void couple(const PlacedJoint& placed, double pinion_mass, std::vector<TableMaker>& joints,
-                std::vector<TableMaker>& bodies);
+    TableMaker coupling(const UrdfJoint& joint);
     std::string unused(std::string name);
     Pose in_body(const PlacedLink& link) const;
     const PlacedLink* find_link(const std::string& name, Findings& findings) const;

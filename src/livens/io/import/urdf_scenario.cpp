@@ -109,7 +109,7 @@ Node UrdfImport::root(const std::set<int>& refused)
     losses_ = losses_before_;
     UrdfJoints joints(file_, tree_, options_, losses_);
     std::vector<TableMaker> all_bodies = bodies(joints, refused);
-    std::vector<TableMaker> all_joints = joints.joints(massless * smallest_mass(masses_), all_bodies);
+    std::vector<TableMaker> all_joints = joints.joints();
     joints.add_loops(all_joints, findings_);
     TableMaker root(file_.place);
     root.whole("format", 1);

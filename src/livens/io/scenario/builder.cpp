@@ -261,6 +261,11 @@ std::string default_name(const Section& section)
     if (section.is_implied("body")) return type + " on " + section.find("point")->text;
     for (const char* key : {"between", "joints"})
         if (const Value* two = section.find(key)) return type + " " + two->texts[0] + "-" + two->texts[1];
+    if (const Value* terms = section.find("terms")) {
+        std::string name = type;
+        for (const Entry& term : terms->node->entries()) name += (name == type ? " " : "-") + term.key;
+        return name;
+    }
     for (const char* key : {"body", "joint"})
         if (section.has(key)) return type + " on " + section.text(key);
     return type;

@@ -37,7 +37,8 @@ LawState WatchedLaw::at(ElementPath& path, double share, const LawState& from) c
         if (has_centre_) state.centre = load.centre(arguments);
     } else {
         const ConstraintRow& row = tables_.model->row(row_);
-        state.numbers[0] = row.guard->value(function_point(row, Configurations(path.X())));
+        state.numbers[0] =
+            row.guard->value(function_point(row, row.functions[0], 0, Configurations(path.X())));
     }
     // an angle goes on through half a turn instead of coming back from the other side
     for (std::size_t k = 0; k < from.numbers.size(); ++k)

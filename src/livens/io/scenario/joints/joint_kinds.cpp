@@ -284,7 +284,9 @@ std::vector<JointKind> kinds_of_coordinates()
                        "axes point the same way."}
                        .needed()}},
          Location::of_joints,
-         [](const JointParts& p) { return gear(p.name, *p.one, *p.other, p.section.number("ratio"), p.X); }},
+         [](const JointParts& p) {
+             return gear(p.name, *p.coupled[0].joint, *p.coupled[1].joint, p.section.number("ratio"), p.X);
+         }},
         {{"rack_and_pinion",
           "the displacement of one joint is proportional to the angle of another (1 constraint)",
           {joints, Key{"radius", types::number,
@@ -294,8 +296,19 @@ std::vector<JointKind> kinds_of_coordinates()
                        .needed()}},
          Location::of_joints,
          [](const JointParts& p) {
-             return rack_and_pinion(p.name, *p.one, *p.other, p.section.number("radius"), p.X, p.scale);
-         }}};
+             return rack_and_pinion(p.name, *p.coupled[0].joint, *p.coupled[1].joint,
+                                    p.section.number("radius"), p.X, p.scale);
+         }},
+        {{"coupling",
+          "a weighted sum of coordinates of any joints is constant (1 constraint)",
+          {Key{
+              "terms", types::factors,
+              "The factor of each coordinate in the sum, under its name in quotes, as in `{ \"left.angle\" = "
+              "1, \"slide.displacement\" = \"-2 1/m\" }`. Angles are in rad, displacements in m; where "
+              "factors have units, all terms must have one."}
+               .needed()}},
+         Location::of_joints,
+         [](const JointParts& p) { return coupling(p.name, p.coupled, p.X, p.scale); }}};
 }
 
 }   // namespace

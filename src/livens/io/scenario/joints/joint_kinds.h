@@ -21,7 +21,7 @@ enum class Location : std::uint8_t {
     on_line,          ///< one point, which is on the first body and slides, and an axis of the first body
     along_axis,       ///< an axis
     along_two_axes,   ///< an axis of each body
-    of_joints         ///< where two other joints are
+    of_joints         ///< where other joints are
 };
 
 /// All that a joint can be made of.
@@ -32,8 +32,8 @@ struct JointParts {
     JointFrame frame;
     const Matrix34 &X_first, &X_second;   ///< at the start
     double scale;
-    const Joint *one = nullptr, *other = nullptr;   ///< of a coupling
-    std::vector<Matrix34> X = {};                   ///< of all bodies, for a coupling
+    std::vector<CoupledJoint> coupled = {};   ///< of a coupling: by `joints` two, else the terms
+    std::vector<Matrix34> X = {};             ///< of all bodies, for a coupling
     /// From coordinates of the bodies as stated to their axes.
     Matrix3 stretch_first = identity<3>(), stretch_second = identity<3>();
 

@@ -204,55 +204,10 @@ Joint make_joint(Builder& builder, const Section& joint, const std::string& name
     return made;
 }
 
-/// The joint of a name in a list of them; an unknown one is reported.
-const Joint* find_joint(Builder& builder, const Section& section, std::size_t i)
-{
-    const Value& names = *section.find("joints");
-    std::vector<std::string_view> known;
-    for (const Joint& joint : builder.model().joints()) {
-        if (joint.name == names.texts[i]) return &joint;
-        known.push_back(joint.name);
-    }
-    bool is_stated = false;   // but wrong: told already
-    for (const Section& other : builder.top().sections("joint"))
-        is_stated =
-            is_stated || (&other != &section && other.has("name") && other.text("name") == names.texts[i]);
-    if (builder.is_excused(names.texts[i])) return nullptr;
-    if (!is_stated || builder.findings().n_errors() == 0)
-        builder.findings().error(names.node->items()[i].place, "joint-unknown",
-                                 section.label() + " refers to '" + names.texts[i] +
-                                     "', but there is no such joint",
-                                 {is_stated ? "couplings can be coupled to other joints only" : "",
-                                  suggest(names.texts[i], known)});
-    return nullptr;
-}
-
-void read_coupling(Builder& builder, const Section& section, const std::string& name, const std::string& path)
-{
-    if (section.find("joints") == nullptr) return;
-    const Joint *first = find_joint(builder, section, 0), *second = find_joint(builder, section, 1);
-    if (first == nullptr || second == nullptr || !section.is_valid()) return;
-    const std::vector<Matrix34> X = builder.start_configurations();
-    builder.guard(path, [&] {
-        Joint joint = joint_kinds()[static_cast<std::size_t>(section.kind())].make({section,
-                                                                                    name,
-                                                                                    world,
-                                                                                    world,
-                                                                                    {},
-                                                                                    world_configuration,
-                                                                                    world_configuration,
-                                                                                    builder.length(),
-                                                                                    first,
-                                                                                    second,
-                                                                                    X});
-        read_times(builder, section, joint);
-        builder.model().add_joint(std::move(joint));
-    });
-}
-
 std::string claim_joint_name(const Section& joint, std::unordered_set<std::string>& taken)
 {
-    const bool has_ends = joint.find("between") != nullptr || joint.find("joints") != nullptr;
+    const bool has_ends =
+        joint.find("between") != nullptr || joint.find("joints") != nullptr || joint.find("terms") != nullptr;
     if (!joint.has("name") && (!has_ends || joint.kind() == any_kind)) return {};
     const std::string name = joint.has("name") ? joint.text("name") : default_name(joint);
     const Advice advice = joint.has("name") ? Advice{"results refer to joints by name", "rename one of them"}
@@ -332,7 +287,7 @@ Table joint_table()
     for (std::size_t i = 0; i < all.size(); ++i) {
         std::vector<Key>& keys = all[i].keys;
         if (joint_kinds()[i].location == Location::of_joints)
-            keys[0].required = true;
+            keys[0].required = true;   // `joints`, or `terms`
         else
             keys.insert(keys.begin(),
                         Key{"between", types::names, two_bodies_or_points}.needed_without("points"));

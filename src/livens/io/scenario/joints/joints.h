@@ -33,6 +33,10 @@ bool check_frames(const Section& section);
 /// Where `points` of a joint or load lie outside of a body's shape, and as places in the world would not.
 void warn_of_world_points(Builder& builder, const Section& section, const std::array<int, 2>& bodies);
 
+/// A joint between coordinates of others, which are in the model already.
+void read_coupling(Builder& builder, const Section& section, const std::string& name,
+                   const std::string& path);
+
 // Each reports all it finds.
 void read_joints(Builder& builder);
 void read_drives(Builder& builder);   ///< after the joints

@@ -141,6 +141,8 @@ constexpr OtherKey other_keys[] = {
      "it couples two joints by their names: joints = [\"a\", \"b\"]"},
     {"[[joint]]", "rack_and_pinion", "between bodies", "joints",
      "it couples two joints by their names: joints = [\"a\", \"b\"]"},
+    {"[[joint]]", "coupling", "between bodies joints joint coordinates factors coefficients ratio polycoef",
+     "terms", "terms = { \"left.angle\" = 1, \"right.angle\" = -2 }: a factor for each coordinate"},
     {"[[joint]]", "rod", "at", "points", two_points},
     {"[[joint]]", "rod", "distance l restlength", "length"},
     {"[[joint]]", "slot", "at", "points", straight_slot},

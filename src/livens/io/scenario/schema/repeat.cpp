@@ -23,7 +23,8 @@ enum class Role : std::uint8_t { word, number, formula };
 
 bool is_numeric(Form form)
 {
-    return form == Form::number || form == Form::integer || form == Form::row || form == Form::rows;
+    return form == Form::number || form == Form::integer || form == Form::row || form == Form::rows ||
+           form == Form::factors;
 }
 
 Role role_of(const Key* key, bool is_in_list)
@@ -56,7 +57,8 @@ public:
         to.number = from.number;
         if (from.content == nullptr) return to;
         to.content = std::make_unique<NodeContent>();
-        if (from.kind == Node::Kind::text) to.content->text = text(from, role_of(key, is_in_list));
+        if (from.kind == Node::Kind::text)
+            to.content->text = text(from.text(), from.place, role_of(key, is_in_list));
         const bool has_names = key != nullptr && key->type == types::two_points && !from.items().empty() &&
                                from.items().front().kind == Node::Kind::text;
         for (const Node& item : from.items())
@@ -64,7 +66,11 @@ public:
         for (const Entry& entry : from.entries()) {
             const Key* inside = table == nullptr ? nullptr : find_key(table->keys_of(any_kind), entry.key);
             const Table* child = inside == nullptr ? nullptr : inside->child.get();
-            to.content->entries.push_back({entry.key, placed(entry.place), node(entry.value, inside, child)});
+            // Factors stand under names of what is repeated as well.
+            const bool has_factors = key != nullptr && key->type == types::factors;
+            to.content->entries.push_back({has_factors ? text(entry.key, entry.place, Role::word) : entry.key,
+                                           placed(entry.place),
+                                           node(entry.value, has_factors ? key : inside, child)});
         }
         return to;
     }
@@ -99,7 +105,7 @@ private:
     }
 
     /// Of what stands in braces.
-    std::string whole(const Node& node, std::string_view inside)
+    std::string whole(const SourceLocation& place, std::string_view inside)
     {
         const Computed found = compute(with_index(inside), parameters_);
         const double value = found.amount.value;
@@ -110,14 +116,13 @@ private:
                    ", and braces hold whole numbers";
         if (said.empty() && found.code.empty()) return std::to_string(static_cast<long long>(value));
         if (!said.empty())
-            findings_.error(placed(node.place), "repeat-braces",
+            findings_.error(placed(place), "repeat-braces",
                             "\"{" + std::string(inside) + "}\" cannot be read: " + said, {"", found.help});
         return {};
     }
 
-    std::string text(const Node& node, Role role)
+    std::string text(const std::string& from, const SourceLocation& place, Role role)
     {
-        const std::string& from = node.text();
         std::string to;
         bool is_quoted = false;   // a name in a formula
         std::size_t plain = 0;    // from here on nothing has been copied
@@ -134,13 +139,12 @@ private:
             if (from[at] != '{') continue;
             const std::size_t close = from.find('}', at);
             if (close == std::string::npos) {
-                findings_.error(placed(node.place), "repeat-braces",
-                                "a brace is not closed in \"" + from + "\"",
+                findings_.error(placed(place), "repeat-braces", "a brace is not closed in \"" + from + "\"",
                                 {"", "write {" + index_.name + "}"});
                 return {};
             }
             copy_until(at);
-            const std::string value = whole(node, std::string_view(from).substr(at + 1, close - at - 1));
+            const std::string value = whole(place, std::string_view(from).substr(at + 1, close - at - 1));
             const bool is_of_word =
                 role == Role::word || is_quoted || (!to.empty() && continues_word(to.back()));
             to += is_of_word ? value : "(" + value + ")";

@@ -29,7 +29,8 @@ enum class Form : std::uint8_t {
     tables,          ///< array of tables
     templates,       ///< array of tables of the root's key of that name, with braces: see without_repeats()
     named_numbers,   ///< a table of numbers and expressions under names of the user's choice: see Parameters
-    model            ///< a table that holds what a file would, read by itself
+    model,           ///< a table that holds what a file would, read by itself
+    factors          ///< a table of numbers of any unit under names of the user's choice
 };
 
 struct KeyType {
@@ -63,6 +64,7 @@ inline constexpr KeyType names{"two strings", Form::names, 2};
 inline constexpr KeyType text_or_list{"a string or a list of strings", Form::text, 0, Form::names};
 inline constexpr KeyType named_texts{"a table of strings", Form::named_texts};
 inline constexpr KeyType named_numbers{"a table of numbers and strings", Form::named_numbers};
+inline constexpr KeyType factors{"a table of numbers", Form::factors};
 inline constexpr KeyType list{"a list of numbers", Form::row};
 inline constexpr KeyType rows{"rows of three numbers", Form::rows};
 inline constexpr KeyType number_or_list{"a number or a list of numbers", Form::number, 0, Form::row};
@@ -116,7 +118,7 @@ struct Key {
     std::shared_ptr<const Table> child = {};   ///< of a table, or tables
     std::string_view formulas = {};            ///< where formulas stand instead; empty: nowhere
     std::string_view told_by = {};   ///< key of points or files that may say it as well; empty: none
-    bool may_be_infinite = false;   ///< inf and -inf are numbers of it
+    bool may_be_infinite = false;    ///< inf and -inf are numbers of it
     /// SI, where the numbers of a list differ: of a matrix row by row, whose diagonal may stand alone.
     Words units = {};
 

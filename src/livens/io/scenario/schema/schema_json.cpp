@@ -70,6 +70,7 @@ std::vector<std::string_view> types_of(Form form)
         return {"array"};
     case Form::named_texts:
     case Form::named_numbers:
+    case Form::factors:
     case Form::table:
     case Form::model:
         return {"object"};
@@ -128,6 +129,8 @@ void write_keywords(JsonWriter& json, const Key& key, Form form)
         break;
     case Form::named_numbers:
         json.key("propertyNames").begin_object().member("pattern", "^[A-Za-z_][A-Za-z0-9_]*$").end_object();
+        [[fallthrough]];
+    case Form::factors:
         json.key("additionalProperties").begin_object();
         json.key("type").begin_array().value("number").value("string").end_array().end_object();
         break;

@@ -76,6 +76,8 @@ private:
                              [&](const Node& item) { return read_text(item, value_.texts.emplace_back()); });
         case Form::named_texts:
             return read_named_texts(node);
+        case Form::factors:
+            return read_factors(node);
         case Form::row:
             return read_row(node, key_.type.count);
         case Form::rows:
@@ -264,6 +266,36 @@ private:
                                    "'" + entry.key + "' in " + subject() + " must be a string, not " +
                                        std::string(describe(entry.value.kind)),
                                    {"", "strings are written in quotes"});
+        });
+    }
+
+    /// Numbers, also computed and with units, of which whoever asks for them knows.
+    bool read_factors(const Node& node)
+    {
+        if (node.kind != NodeKind::table) return wrong_type(node);
+        return std::ranges::all_of(node.entries(), [&](const Entry& entry) {
+            const Node& given = entry.value;
+            const std::string of = "'" + entry.key + "' in " + subject();
+            if (given.kind == NodeKind::text) {
+                const Computed found = compute(given.text(), parameters_);
+                keep(found.amount.value);
+                return found.code.empty() ||
+                       (!found.error.empty() &&
+                        findings_.error(given.place, found.code,
+                                        of + " cannot be " + quoted(given) + ": " + found.error,
+                                        {"", found.help}));
+            }
+            if (given.kind != NodeKind::integer && given.kind != NodeKind::number)
+                return findings_.error(given.place, "wrong-type",
+                                       of + " must be a number, not " + std::string(describe(given.kind)),
+                                       {"", given.kind == NodeKind::table && !given.entries().empty()
+                                                ? "names with a point are written in quotes: \"" + entry.key +
+                                                      "." + given.entries()[0].key + "\" = ..."
+                                                : ""});
+            return std::isfinite(given.number)
+                       ? keep(given.number)
+                       : findings_.error(given.place, "not-finite",
+                                         of + " must be finite, not " + to_text(given.number));
         });
     }
 

@@ -5,8 +5,8 @@
 #include "livens/spacetime/nodal/kernel/joint_slopes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <utility>
 
 #include "livens/dynamics/rows/twist_blocks.h"
 
@@ -84,7 +84,8 @@ void JointSlopes::add_form(const QuadraticForm& form, int i, int j, double facto
     add(j, i, form.c_ij, false);
 }
 
-/// Its forms by their weights, and of its function sum_kl F_kl dq_k/dX (dq_l/dX)^T, at once by scaled twists.
+/// Its forms by their weights, and of its functions sum_kl F_kl dq_k/dX (dq_l/dX)^T, at once by scaled
+/// twists.
 void JointSlopes::add_hessian(int r, double mu, Instant at)
 {
     const RowTable& table = tables_.rows[r];
@@ -93,26 +94,34 @@ void JointSlopes::add_hessian(int r, double mu, Instant at)
     for_each_form(row, at, X, [&](const QuadraticForm& form, int i, int j, double weight) {
         add_form(form, i, j, -mu * weight);
     });
-    if (!row.function) return;
-    const SmoothFunction::Value F = row.function->at(function_point(row, X));
-    const std::size_t n = row.coordinates.size();
-    std::array<std::array<std::array<double, 6>, RowBodies::most>, SmoothFunction::most> y{};   // of q_k
-    for (std::size_t k = 0; k < n; ++k) {
-        const PairForm& q = row.coordinates[k];
+    for_each_function(row,
+                      [&](const SmoothFunction& F, std::size_t first) { add_function(row, F, first, mu); });
+}
+
+void JointSlopes::add_function(const ConstraintRow& row, const SmoothFunction& function, std::size_t first,
+                               double mu)
+{
+    constexpr std::size_t most = 2 * SmoothFunction::most;
+    int bodies[most];
+    std::size_t n = 0;
+    double y[SmoothFunction::most][most][6] = {};   // of each q by each body
+    const Configurations X(X_.data());
+    const SmoothFunction::Value F = function.at(function_point(row, function, first, X));
+    for (std::size_t k = 0; k < function.n; ++k) {
+        const PairForm& q = row.coordinates[first + k];
         const FormGradient g = form_gradient(q, q.body_i, q.body_j, X);
-        for (int side = 0; side < table.n_sides; ++side) {
-            const int b = table.bodies[side];
-            if (b != q.body_j && b != q.body_i) continue;
-            tables_.bodies.scaled_row(b, X_.data() + 12 * b, maps_.data() + 12 * b,
-                                      b == q.body_j ? g.j.a : g.i.a, y[k][side].data());
+        for (const auto& [b, by] : {std::pair(q.body_i, &g.i), std::pair(q.body_j, &g.j)}) {
+            if (b == world) continue;
+            const auto side = static_cast<std::size_t>(std::find(bodies, bodies + n, b) - bodies);
+            if (side == n) bodies[n++] = b;
+            tables_.bodies.scaled_row(b, X_.data() + 12 * b, maps_.data() + 12 * b, by->a, y[k][side]);
         }
     }
-    for (int i = 0; i < table.n_sides; ++i)
-        for (int j = 0; j < table.n_sides; ++j) {
-            SlopesOfPair& slopes =
-                slopes_.emplace_back(SlopesOfPair{table.bodies[i], table.bodies[j], {}, {}});
-            for (std::size_t k = 0; k < n; ++k)
-                for (std::size_t l = 0; l < n; ++l)
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) {
+            SlopesOfPair& slopes = slopes_.emplace_back(SlopesOfPair{bodies[i], bodies[j], {}, {}});
+            for (std::size_t k = 0; k < function.n; ++k)
+                for (std::size_t l = 0; l < function.n; ++l)
                     for (std::size_t a = 0; F.hessian[k][l] != 0 && a < 36; ++a)
                         slopes.by_X[a] -= mu * F.hessian[k][l] * y[k][i][a / 6] * y[l][j][a % 6];
         }

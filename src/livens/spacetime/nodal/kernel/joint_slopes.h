@@ -32,6 +32,7 @@ private:
     void place(int lane, const lanes::Values& nodes);
     void add_row(int r, double mu, Instant at);
     void add_hessian(int r, double mu, Instant at);
+    void add_function(const ConstraintRow& row, const SmoothFunction& function, std::size_t first, double mu);
     void add_form(const QuadraticForm& form, int i, int j, double factor);
     Matrix<12, 12>& of(int i, int j);
     void add_turning(int body);

@@ -4,6 +4,7 @@
 #include "livens/spacetime/nodal/kernel/tree_plan.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "livens/multibody/model.h"
@@ -30,6 +31,21 @@ std::vector<int> bodies_of(const ModelTables& tables, const lanes::Pattern& p, c
     return bodies;
 }
 
+/// act(body, body) for whose forces turn with each other: a function of a few forms has a slope by all of
+/// their bodies, so that a coupling of many joints does not tie all of them to each other.
+template <typename Act>
+void for_each_slope(const ConstraintRow& row, const Act& act)
+{
+    act(row.body_i, row.body_j);
+    for_each_function(row, [&](const SmoothFunction& F, std::size_t first) {
+        const auto forms = std::span(row.coordinates).subspan(first, F.n);
+        for (const PairForm& one : forms)
+            for (const PairForm& other : forms)
+                for (const int b : {one.body_i, one.body_j})
+                    for (const int c : {other.body_i, other.body_j}) act(b, c);
+    });
+}
+
 void add_once(std::vector<int>& to, int what)
 {
     if (std::ranges::find(to, what) == to.end()) to.push_back(what);
@@ -42,7 +58,7 @@ TreePlan::TreePlan(const ModelTables& tables, const RowPattern& pattern)
     std::vector<JointRows> joints;
     collect(tables, pattern, joints);
     grow(tables.n_bodies(), joints);
-    couple(tables);
+    couple(tables, pattern);
 }
 
 /// Groups between the same bodies are one joint.
@@ -92,7 +108,7 @@ void TreePlan::grow(int n_bodies, std::vector<JointRows>& joints)
 }
 
 /// What elimination fills in.
-void TreePlan::couple(const ModelTables& tables)
+void TreePlan::couple(const ModelTables& tables, const RowPattern& pattern)
 {
     const int n = tables.n_bodies();
     std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(n));
@@ -105,10 +121,9 @@ void TreePlan::couple(const ModelTables& tables)
         for (const int a : tables.model->loads()[l].bodies)
             for (const int b : tables.model->loads()[l].bodies) pair_up(a, b);
     for (std::size_t j = 0; j < closing.size(); ++j) {
-        for (const int b : closing[j].bodies) {
-            for (const int other : closing[j].bodies) pair_up(b, other);
-            pair_up(b, n + static_cast<int>(j));
-        }
+        for (const int place : closing[j].rows)
+            for_each_slope(*tables.rows[pattern.rows()[static_cast<std::size_t>(place)]].row, pair_up);
+        for (const int b : closing[j].bodies) pair_up(b, n + static_cast<int>(j));
     }
     coupled.assign(static_cast<std::size_t>(n), {});
     std::vector<char> is_gone(static_cast<std::size_t>(n), 0);

@@ -32,7 +32,7 @@ struct TreePlan {
 private:
     void collect(const ModelTables& tables, const RowPattern& pattern, std::vector<JointRows>& joints);
     void grow(int n_bodies, std::vector<JointRows>& joints);
-    void couple(const ModelTables& tables);
+    void couple(const ModelTables& tables, const RowPattern& pattern);
 };
 
 }   // namespace livens::inline spacetime_internal
