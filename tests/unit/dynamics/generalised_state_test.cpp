@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 
 #include "livens/base/error.h"
 #include "livens/dynamics/instant/instant.h"
@@ -383,6 +384,12 @@ TEST(GeneralisedState, RefusesWhatIsNoState)
               }),
               "coordinate-twice q[A.angle]");
     EXPECT_EQ(code_of([&] { coordinates_of(loop.model, {"A.angel"}); }), "coordinate-unknown q[A.angel]");
+    EXPECT_EQ(code_of([&] { crank.at(Numbers{1}).jacobian(world); }), "body-unknown ");
+    EXPECT_EQ(code_of([&] { crank.at(Numbers{1}).drift(3); }), "body-unknown ");
+    EXPECT_EQ(code_of([&] {
+                  crank.at(Numbers{1}).reaching({0, {}, {0, std::nan(""), 0}});
+              }),
+              "coordinate-value pose");
     EXPECT_EQ(code_of([&] { rocker.at(Numbers{2}); }).substr(0, 9), "loop-open");
     EXPECT_EQ(code_of([&] { crank.at(Numbers{1e300}); }), "coordinate-value q[A.angle]");
     EXPECT_EQ(code_of([&] { rocker.at(Numbers{0.1}); }), "none");
@@ -433,11 +440,11 @@ TEST(GeneralisedState, ReachesAPoseNearby)
         const GeneralisedState goal = one.coordinates.at(moved(one.coordinates, one.q, by, 0.4));
         const Matrix34& X = goal.state().X[4];
         const Matrix3 D = directors(X);
-        for (const Matrix3* turned : {static_cast<const Matrix3*>(nullptr), &D}) {
+        for (const std::optional<Matrix3>& turned : {std::optional<Matrix3>(), std::optional(D)}) {
             const GeneralisedState reached = there.reaching({4, theta, X * point(theta), turned});
             const Matrix34& Y = reached.state().X[4];
             EXPECT_LT(norm((Y - X) * point(theta)), 1e-11);
-            if (turned != nullptr) {
+            if (turned) {
                 EXPECT_LT(norm(directors(Y) - D), 1e-11);
             }
             for (const double phi : joint_values(one.tree.model, reached.state().X))

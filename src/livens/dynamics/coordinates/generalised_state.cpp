@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "livens/base/text.h"
 #include "livens/dynamics/coordinates/state_parts.h"
@@ -93,7 +94,8 @@ GeneralisedState GeneralisedCoordinates::at(std::span<const double> numbers,
     const std::vector<double> rest(static_cast<std::size_t>(n_rates()), 0.0);
     if (rates.empty()) rates = rest;
     check_numbers(*mechanism_, rates, rest.size(), names_of_rates(), "v");
-    return {mechanism_, lead(*mechanism_, *start_, numbers), rates};
+    return GeneralisedState(std::make_shared<const GeneralisedState::Parts>(
+        mechanism_, lead(*mechanism_, *start_, numbers), rates));
 }
 
 GeneralisedState::Parts::Parts(std::shared_ptr<const Mechanism> the_mechanism, Placed the_placed,
@@ -236,10 +238,7 @@ DenseMatrix GeneralisedState::Parts::mass_factor() const
     return L;
 }
 
-GeneralisedState::GeneralisedState(std::shared_ptr<const Mechanism> mechanism, Placed placed,
-                                   std::span<const double> rates)
-    : parts_(std::make_shared<const Parts>(std::move(mechanism), std::move(placed), rates))
-{}
+GeneralisedState::GeneralisedState(std::shared_ptr<const Parts> parts) : parts_(std::move(parts)) {}
 
 const State& GeneralisedState::state() const { return parts_->state; }
 const std::vector<double>& GeneralisedState::numbers() const { return parts_->placed.numbers; }
@@ -299,10 +298,18 @@ void GeneralisedState::Parts::check(std::span<const double> given, const std::st
          given.size() == n ? "" : std::to_string(given.size()), "", "", "give one for each rate"});
 }
 
+const BodyTable& GeneralisedState::Parts::table_of(int body) const
+{
+    if (body < 0 || body >= mechanism->model.n_bodies())
+        throw InputError({"body-unknown", "", "there is no such body", std::to_string(body), "", "",
+                          "the world does not move"});
+    return mechanism->bodies[static_cast<std::size_t>(body)];
+}
+
 std::vector<double> GeneralisedState::jacobian(int body, const Vector3& point) const
 {
     const auto n = static_cast<std::size_t>(parts_->mechanism->n_rates);
-    const BodyTable& table = parts_->mechanism->bodies[body];
+    const BodyTable& table = parts_->table_of(body);
     std::vector<double> rows(6 * n, 0.0);
     const Vector3 arm = directors(parts_->placed.X[body]) * point;
     for (std::size_t k = 0; k < n; ++k) {
@@ -321,7 +328,7 @@ std::vector<double> GeneralisedState::jacobian(int body, const Vector3& point) c
 
 std::vector<double> GeneralisedState::drift(int body, const Vector3& point) const
 {
-    const BodyTable& table = parts_->mechanism->bodies[body];
+    const BodyTable& table = parts_->table_of(body);
     const double* twist = parts_->drifts.data() + table.first;
     const Vector3 arm = directors(parts_->placed.X[body]) * point;
     Vector3 a{twist[0], twist[1], twist[2]}, alpha{};

@@ -34,6 +34,8 @@ struct GeneralisedState::Parts {
     DenseMatrix mass() const;
     /// Its Cholesky factor. Throws InputError.
     DenseMatrix mass_factor() const;
+    /// Throws InputError where there is no such body.
+    const BodyTable& table_of(int body) const;
     /// One finite number for each rate; throws InputError.
     void check(std::span<const double> given, const std::string& what) const;
 
