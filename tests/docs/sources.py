@@ -206,6 +206,8 @@ OTHERS = [   # (page, words, file, what stands there)
     (VALIDATION, "| one inertia | «1e-8» rad |", MECHANISMS, r'"of pinion", "angle", t\)\.value, turned, ([^)]+)\)'),
     (VALIDATION, "| Hooke's formula | «1e-10» rad |", MECHANISMS, r"angle\.value - out, 2 \* pi\), 0, ([^)]+)\)"),
     (VALIDATION, "| equal turns | «1e-13» rad |", MECHANISMS, r'"bearing out", "angle", t\)\.value, 5 \* t, ([^)]+)\)'),
+    (VALIDATION, "| reductions by hand | «1e-12» of the largest |", "python/tests/test_states.py", r"relative\(state\.bias_forces, bias \+ held\) < (\S+)"),
+    (VALIDATION, "| Pinocchio | «1e-12» of the largest |", "tests/models/states.py", r"BOUND = (\S+)"),
     (VALIDATION, "| damped oscillation; uniform acceleration | «1e-10», «1e-9» rad |", MECHANISMS,
      r"\* wave, ([^)]+)\).*?\(0\.5 / 0\.02\) \* 9, ([^)]+)\)"),
     (VALIDATION, "| uniform acceleration, weight by hand | «1e-12» m, «1e-10» N |", MECHANISMS,
