@@ -11,6 +11,12 @@
 
 #include "livens/dynamics/start/consistent_start.h"
 
+namespace livens::inline dynamics_internal {
+struct Mechanism;
+struct Placed;
+struct StateParts;
+}   // namespace livens::inline dynamics_internal
+
 namespace [[gnu::visibility("default")]] livens {
 
 /// What tells where a mechanism is: a coordinate of a joint, a coordinate of a body's reference point in the
@@ -28,10 +34,6 @@ struct GeneralisedCoordinate {
 };
 
 class GeneralisedState;
-inline namespace dynamics_internal {
-struct Mechanism;
-struct Placed;
-}   // namespace dynamics_internal
 
 /// Independent coordinates of a model, which tell where all its bodies are as long as they are reached from
 /// where these are placed.
@@ -95,8 +97,7 @@ struct StateTarget {
 /// matrices row by row; N along displacements, N m along angles.
 class GeneralisedState {
 public:
-    struct Parts;
-    explicit GeneralisedState(std::shared_ptr<const Parts> parts);
+    explicit GeneralisedState(std::shared_ptr<const StateParts> parts);
 
     const State& state() const;                   ///< bodies of the model: X, V, time, turns of loads
     const std::vector<double>& numbers() const;   ///< angles with their turns
@@ -136,7 +137,7 @@ public:
     GeneralisedState reaching(const StateTarget& target) const;
 
 private:
-    std::shared_ptr<const Parts> parts_;
+    std::shared_ptr<const StateParts> parts_;
 };
 
 }   // namespace gnu::visibility("default")]]livens

@@ -146,7 +146,7 @@ GeneralisedState GeneralisedState::reaching(const StateTarget& target) const
     const PoseGap left = leading.follow(at, target.position, to, 300);
     if (!(left.size() <= pose_missed)) refuse_pose(m, target, left);
     const std::vector<double> rest(static_cast<std::size_t>(m.n_rates), 0.0);
-    return GeneralisedState(std::make_shared<const Parts>(parts_->mechanism, std::move(at), rest));
+    return GeneralisedState(std::make_shared<const StateParts>(parts_->mechanism, std::move(at), rest));
 }
 
 }   // namespace livens

@@ -9,11 +9,11 @@
 
 #include "livens/dynamics/coordinates/mechanism.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
-struct GeneralisedState::Parts {
-    Parts(std::shared_ptr<const Mechanism> the_mechanism, Placed the_placed,
-          std::span<const double> the_rates);
+struct StateParts {
+    StateParts(std::shared_ptr<const Mechanism> the_mechanism, Placed the_placed,
+               std::span<const double> the_rates);
 
     std::shared_ptr<const Mechanism> mechanism;
     Placed placed;
@@ -44,4 +44,4 @@ private:
     std::vector<Matrix34> inertia_of(std::span<const double> accelerations) const;
 };
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal
