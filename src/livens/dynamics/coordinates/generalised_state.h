@@ -11,13 +11,13 @@
 
 #include "livens/dynamics/start/consistent_start.h"
 
-namespace livens::inline dynamics_internal {
-struct Mechanism;
-struct Placed;
-struct StateParts;
-}   // namespace livens::inline dynamics_internal
-
 namespace [[gnu::visibility("default")]] livens {
+
+inline namespace dynamics_internal {
+struct [[gnu::visibility("hidden")]] Mechanism;
+struct [[gnu::visibility("hidden")]] Placed;
+struct [[gnu::visibility("hidden")]] StateParts;
+}   // namespace dynamics_internal
 
 /// What tells where a mechanism is: a coordinate of a joint, a coordinate of a body's reference point in the
 /// world, or the orientation of a body.
