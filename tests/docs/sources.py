@@ -115,6 +115,7 @@ TIES = [
     ("that moves a body by more than $«10^6»$ of its own change", f"{DYNAMICS}/coordinates/lead.cpp", r"most_moved = ([^;]+);"),
     ("whose way ends within $«10^{-4}»$ of where rows close to $«10^{-6}»$", f"{DYNAMICS}/coordinates/lead.cpp",
      r"turning_near = ([^,]+), turning = ([^;]+);"),
+    ("alone lose rank there, with a pivot below $«10^{-4}»$, the position", f"{DYNAMICS}/coordinates/lead.cpp", r"joints_well_held = ([^;]+);"),
     ("of sixth order, with steps of «0.01» rad or lengths", f"{DYNAMICS}/coordinates/slopes.cpp", r"slope_step = ([^;]+);"),
     ("Equal rows are scaled down by up to «1e-3»", f"{DYNAMICS}/rows/rank.cpp", r"favour\(.*?1 - (\S+) \*"),
     ("A row that adds less than «1e-3» there", f"{DYNAMICS}/rows/rank.cpp", r"well_held = ([^;]+);"),

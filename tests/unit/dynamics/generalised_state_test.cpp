@@ -417,6 +417,27 @@ TEST(GeneralisedState, NamesADeadCentre)
     EXPECT_EQ(code_of([&] { rocker.at(Numbers{most + 1e-3}); }).substr(0, 9), "loop-open");
 }
 
+/// Bars of a parallelogram in one line hold less: no coordinate is to blame. It is passed on its branch.
+TEST(GeneralisedState, NamesWhereJointsHoldLessAndPassesIt)
+{
+    Linkage bars(7, {});
+    bars.model = Model({0, 0, -9.81});
+    for (const Vector3& at : {Vector3{0, 0, 0.5}, {1, 0, 0.5}, {0.5, 0, 1}}) bars.add_link(at);
+    const auto hinge = [&](const std::string& joint, int first, int second, const Vector3& at) {
+        bars.model.add_joint(revolute(joint, first, second, bars.frame(first, second, at, {0, 1, 0})));
+    };
+    hinge("A", world, 0, {0, 0, 0});
+    hinge("B", world, 1, {1, 0, 0});
+    hinge("C", 0, 2, {0, 0, 1});
+    hinge("D", 1, 2, {1, 0, 1});
+    const GeneralisedCoordinates coordinates = coordinates_of(bars.model);
+    EXPECT_EQ(code_of([&] { coordinates.at(Numbers{0.5 * std::numbers::pi}); }), "coordinates-singular q");
+    for (const double angle : {1.5, 1.7, 4.6, 4.8}) {
+        const GeneralisedState state = coordinates.at(Numbers{angle});
+        EXPECT_NEAR(state.coordinates()[1][0], angle, 1e-12) << "the other crank turns likewise";
+    }
+}
+
 TEST(GeneralisedState, DrivesAreReleasedAndOtherFreedomsAreNamed)
 {
     Loop loop;

@@ -35,7 +35,8 @@ constexpr double newton_settled = 1e-9;   // a step of Newton's after which the 
 constexpr double most_corrected = 0.3;    // by Newton's iteration, of a step: more may be another branch
 // A way that ends as near as this where rows close to this, is at a dead centre.
 constexpr double turning_near = 1e-4, turning = 1e-6;
-constexpr double most_moved = 1e6;   // of a body by a coordinate: rad or lengths, by the same
+constexpr double joints_well_held = 1e-4;   // smallest pivot of rows beside which a coordinate is to blame
+constexpr double most_moved = 1e6;          // of a body by a coordinate: rad or lengths, by the same
 
 void displace_bodies(const Mechanism& mechanism, std::span<const double> twists, Configuration& X)
 {
@@ -233,13 +234,18 @@ std::string where_it_ends(const Mechanism& mechanism, const Placed& last, std::s
 Complaint why_open(const Mechanism& mechanism, const Placed& last, std::span<const double> numbers)
 {
     int row = 0;
-    const double open = mechanism.open(nearly_closed(mechanism, last, numbers), &row);
+    const Configuration X = nearly_closed(mechanism, last, numbers);
+    const double open = mechanism.open(X, &row);
     const std::vector<double> way = mechanism.way(last.numbers, numbers);
     const std::string where = "the mechanism can be led to " + where_it_ends(mechanism, last, way);
     const std::string help = "give coordinates that the joints admit, or place the bodies nearer to them";
     const int turning_back = farthest_moving(mechanism, last);
-    if (open <= turning && mechanism.size_of(way) < turning_near)
-        return why_singular(mechanism, turning_back);
+    if (open <= turning && mechanism.size_of(way) < turning_near) {
+        const RowRank held = row_rank(mechanism.model, X, all_rows(mechanism.model));
+        const bool joints_hold = static_cast<int>(held.independent.size()) == mechanism.rank &&
+                                 held.smallest_pivot > joints_well_held;
+        return why_singular(mechanism, joints_hold ? turning_back : -1);
+    }
     if (open <= rows_closed)
         return {"loop-open",
                 "q[" + mechanism.coordinates[turning_back].name + "]",
