@@ -391,7 +391,13 @@ TEST(GeneralisedState, RefusesWhatIsNoState)
               }),
               "coordinate-value pose");
     EXPECT_EQ(code_of([&] { rocker.at(Numbers{2}); }).substr(0, 9), "loop-open");
-    EXPECT_EQ(code_of([&] { crank.at(Numbers{1e300}); }), "coordinate-value q[A.angle]");
+    for (const double far : {1e300, -1e300, 1e5})
+        EXPECT_EQ(code_of([&] { crank.at(Numbers{far}); }), "coordinate-value q[A.angle]");
+    Case tree(1, false);
+    tree.q[1] = 1e300;
+    EXPECT_EQ(code_of([&] { tree.coordinates.at(tree.q); }), "coordinate-value q[j1.angle]");
+    tree.q[1] = 5000;
+    EXPECT_NEAR(tree.coordinates.at(tree.q).coordinates()[1][0], 5000, 1e-9) << "turns are counted";
     EXPECT_EQ(code_of([&] { rocker.at(Numbers{0.1}); }), "none");
 }
 
