@@ -310,7 +310,7 @@ class Modes(_ByName):
 
 class StateMatrices(NamedTuple):
     """x' = A x + B u, y = C x + D u about an equilibrium; x holds the n amplitudes of small motions and their
-    rates.
+    rates; of a :class:`MechanismState` small changes of its coordinates and their rates.
 
     ``scipy.signal.StateSpace(*matrices[:4])`` and ``control.ss(*matrices[:4])`` accept them.
     """

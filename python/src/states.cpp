@@ -147,11 +147,10 @@ GeneralisedState reaching(const GeneralisedState& at, int body, const Numbers& p
                           const std::optional<Numbers>& turned)
 {
     StateTarget target{body, point_of(at, body, point), {position[0], position[1], position[2]}};
-    Matrix3 triad{};
     if (turned) {
+        Matrix3 triad{};
         std::copy(turned->begin(), turned->end(), triad.a);
-        triad = project_directors(triad);
-        target.directors = &triad;
+        target.directors = project_directors(triad);
     }
     const nb::gil_scoped_release unlock;
     return at.reaching(target);

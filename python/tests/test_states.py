@@ -215,6 +215,20 @@ def test_stewart_platform_as_reduced_by_hand() -> None:
     assert relative(state.accelerations(state.inverse_dynamics(a)), a) < 1e-11
 
 
+def test_stewart_platform_is_led_to_a_pose() -> None:
+    """Legs are as long as the pose makes them."""
+    m = stewart()
+    placed = m.at()["platform"].position
+    goal, turned = placed + (0.1, -0.15, 0.2), (np.cos(0.15), 0.6 * np.sin(0.15), 0, 0.8 * np.sin(0.15))
+    q = lv.reach(m, "platform", (goal, turned))
+    feet, balls = feet_and_balls()
+    for i in range(6):
+        longer = np.linalg.norm(goal + rotation(turned) @ balls[i] - feet[i]) - np.linalg.norm(placed + balls[i] - feet[i])
+        assert q[f"leg {i}.displacement"] == pytest.approx(longer, abs=1e-12)
+    with pytest.raises(lv.InputError, match="coordinates-singular|loop-open|pose-unreachable"):
+        lv.reach(m, "platform", (placed + (0, 0, -1.1), turned))
+
+
 def robot() -> lv.Model:
     """A floating body with an arm of two links, a damper and a spring."""
     m = lv.Model("floating arm", gravity=GRAVITY)

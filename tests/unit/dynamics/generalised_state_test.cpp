@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 
 #include "livens/base/error.h"
 #include "livens/dynamics/instant/instant.h"
@@ -383,8 +384,20 @@ TEST(GeneralisedState, RefusesWhatIsNoState)
               }),
               "coordinate-twice q[A.angle]");
     EXPECT_EQ(code_of([&] { coordinates_of(loop.model, {"A.angel"}); }), "coordinate-unknown q[A.angel]");
+    EXPECT_EQ(code_of([&] { crank.at(Numbers{1}).jacobian(world); }), "body-unknown ");
+    EXPECT_EQ(code_of([&] { crank.at(Numbers{1}).drift(3); }), "body-unknown ");
+    EXPECT_EQ(code_of([&] {
+                  crank.at(Numbers{1}).reaching({0, {}, {0, std::nan(""), 0}});
+              }),
+              "coordinate-value pose");
     EXPECT_EQ(code_of([&] { rocker.at(Numbers{2}); }).substr(0, 9), "loop-open");
-    EXPECT_EQ(code_of([&] { crank.at(Numbers{1e300}); }), "coordinate-value q[A.angle]");
+    for (const double far : {1e300, -1e300, 1e5})
+        EXPECT_EQ(code_of([&] { crank.at(Numbers{far}); }), "coordinate-value q[A.angle]");
+    Case tree(1, false);
+    tree.q[1] = 1e300;
+    EXPECT_EQ(code_of([&] { tree.coordinates.at(tree.q); }), "coordinate-value q[j1.angle]");
+    tree.q[1] = 5000;
+    EXPECT_NEAR(tree.coordinates.at(tree.q).coordinates()[1][0], 5000, 1e-9) << "turns are counted";
     EXPECT_EQ(code_of([&] { rocker.at(Numbers{0.1}); }), "none");
 }
 
@@ -410,6 +423,27 @@ TEST(GeneralisedState, NamesADeadCentre)
     EXPECT_EQ(code_of([&] { rocker.at(Numbers{most + 1e-3}); }).substr(0, 9), "loop-open");
 }
 
+/// Bars of a parallelogram in one line hold less: no coordinate is to blame. It is passed on its branch.
+TEST(GeneralisedState, NamesWhereJointsHoldLessAndPassesIt)
+{
+    Linkage bars(7, {});
+    bars.model = Model({0, 0, -9.81});
+    for (const Vector3& at : {Vector3{0, 0, 0.5}, {1, 0, 0.5}, {0.5, 0, 1}}) bars.add_link(at);
+    const auto hinge = [&](const std::string& joint, int first, int second, const Vector3& at) {
+        bars.model.add_joint(revolute(joint, first, second, bars.frame(first, second, at, {0, 1, 0})));
+    };
+    hinge("A", world, 0, {0, 0, 0});
+    hinge("B", world, 1, {1, 0, 0});
+    hinge("C", 0, 2, {0, 0, 1});
+    hinge("D", 1, 2, {1, 0, 1});
+    const GeneralisedCoordinates coordinates = coordinates_of(bars.model);
+    EXPECT_EQ(code_of([&] { coordinates.at(Numbers{0.5 * std::numbers::pi}); }), "coordinates-singular q");
+    for (const double angle : {1.5, 1.7, 4.6, 4.8}) {
+        const GeneralisedState state = coordinates.at(Numbers{angle});
+        EXPECT_NEAR(state.coordinates()[1][0], angle, 1e-12) << "the other crank turns likewise";
+    }
+}
+
 TEST(GeneralisedState, DrivesAreReleasedAndOtherFreedomsAreNamed)
 {
     Loop loop;
@@ -433,11 +467,11 @@ TEST(GeneralisedState, ReachesAPoseNearby)
         const GeneralisedState goal = one.coordinates.at(moved(one.coordinates, one.q, by, 0.4));
         const Matrix34& X = goal.state().X[4];
         const Matrix3 D = directors(X);
-        for (const Matrix3* turned : {static_cast<const Matrix3*>(nullptr), &D}) {
+        for (const std::optional<Matrix3>& turned : {std::optional<Matrix3>(), std::optional(D)}) {
             const GeneralisedState reached = there.reaching({4, theta, X * point(theta), turned});
             const Matrix34& Y = reached.state().X[4];
             EXPECT_LT(norm((Y - X) * point(theta)), 1e-11);
-            if (turned != nullptr) {
+            if (turned) {
                 EXPECT_LT(norm(directors(Y) - D), 1e-11);
             }
             for (const double phi : joint_values(one.tree.model, reached.state().X))

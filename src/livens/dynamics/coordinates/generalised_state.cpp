@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "livens/base/text.h"
 #include "livens/dynamics/coordinates/state_parts.h"
@@ -93,11 +94,12 @@ GeneralisedState GeneralisedCoordinates::at(std::span<const double> numbers,
     const std::vector<double> rest(static_cast<std::size_t>(n_rates()), 0.0);
     if (rates.empty()) rates = rest;
     check_numbers(*mechanism_, rates, rest.size(), names_of_rates(), "v");
-    return {mechanism_, lead(*mechanism_, *start_, numbers), rates};
+    return GeneralisedState(
+        std::make_shared<const StateParts>(mechanism_, lead(*mechanism_, *start_, numbers), rates));
 }
 
-GeneralisedState::Parts::Parts(std::shared_ptr<const Mechanism> the_mechanism, Placed the_placed,
-                               std::span<const double> the_rates)
+StateParts::StateParts(std::shared_ptr<const Mechanism> the_mechanism, Placed the_placed,
+                       std::span<const double> the_rates)
     : mechanism(std::move(the_mechanism)), placed(std::move(the_placed)),
       rates(the_rates.begin(), the_rates.end())
 {
@@ -116,7 +118,7 @@ GeneralisedState::Parts::Parts(std::shared_ptr<const Mechanism> the_mechanism, P
     drifts = drifting_twists();
 }
 
-std::vector<Matrix34> GeneralisedState::Parts::rates_of_bodies(std::span<const double> twists) const
+std::vector<Matrix34> StateParts::rates_of_bodies(std::span<const double> twists) const
 {
     std::vector<Matrix34> V(placed.X.size());
     for (int b = 0; b < mechanism->model.n_bodies(); ++b) {
@@ -131,7 +133,7 @@ std::vector<Matrix34> GeneralisedState::Parts::rates_of_bodies(std::span<const d
 }
 
 /// Twist accelerations without q'': the rows of joints and coordinates take off what velocities do to them.
-std::vector<double> GeneralisedState::Parts::drifting_twists() const
+std::vector<double> StateParts::drifting_twists() const
 {
     const Mechanism& m = *mechanism;
     std::vector<double> wanted;
@@ -152,7 +154,7 @@ std::vector<double> GeneralisedState::Parts::drifting_twists() const
     return placed.system->twists(wanted);
 }
 
-std::vector<double> GeneralisedState::Parts::along(std::span<const Matrix34> forces) const
+std::vector<double> StateParts::along(std::span<const Matrix34> forces) const
 {
     const Mechanism& m = *mechanism;
     std::vector<double> rows(static_cast<std::size_t>(m.bodies.n_twists()), 0.0), along;
@@ -165,7 +167,7 @@ std::vector<double> GeneralisedState::Parts::along(std::span<const Matrix34> for
     return along;
 }
 
-std::vector<Matrix34> GeneralisedState::Parts::weights() const
+std::vector<Matrix34> StateParts::weights() const
 {
     std::vector<Matrix34> all;
     for (const Body& body : mechanism->model.bodies())
@@ -173,7 +175,7 @@ std::vector<Matrix34> GeneralisedState::Parts::weights() const
     return all;
 }
 
-std::vector<Matrix34> GeneralisedState::Parts::load_forces() const
+std::vector<Matrix34> StateParts::load_forces() const
 {
     const Mechanism& m = *mechanism;
     std::vector<Matrix34> all(placed.X.size());
@@ -186,7 +188,7 @@ std::vector<Matrix34> GeneralisedState::Parts::load_forces() const
 }
 
 /// m times X'' of twist accelerations.
-std::vector<Matrix34> GeneralisedState::Parts::inertia_of(std::span<const double> accelerations) const
+std::vector<Matrix34> StateParts::inertia_of(std::span<const double> accelerations) const
 {
     std::vector<Matrix34> all = rates_of_bodies(accelerations);
     for (std::size_t b = 0; b < all.size(); ++b)
@@ -194,8 +196,8 @@ std::vector<Matrix34> GeneralisedState::Parts::inertia_of(std::span<const double
     return all;
 }
 
-std::vector<double> GeneralisedState::Parts::less_loads(std::span<const double> accelerations,
-                                                        std::span<const Matrix34> loads) const
+std::vector<double> StateParts::less_loads(std::span<const double> accelerations,
+                                           std::span<const Matrix34> loads) const
 {
     std::vector<double> twists = drifts;
     for (int k = 0; k < mechanism->n_rates; ++k)
@@ -209,7 +211,7 @@ std::vector<double> GeneralisedState::Parts::less_loads(std::span<const double> 
     return along(forces);
 }
 
-DenseMatrix GeneralisedState::Parts::mass() const
+DenseMatrix StateParts::mass() const
 {
     const int n = mechanism->n_rates;
     std::vector<std::vector<Matrix34>> moved;
@@ -226,7 +228,7 @@ DenseMatrix GeneralisedState::Parts::mass() const
     return M;
 }
 
-DenseMatrix GeneralisedState::Parts::mass_factor() const
+DenseMatrix StateParts::mass_factor() const
 {
     DenseMatrix L = cholesky(mass());
     if (!all_finite(L.a))
@@ -236,10 +238,7 @@ DenseMatrix GeneralisedState::Parts::mass_factor() const
     return L;
 }
 
-GeneralisedState::GeneralisedState(std::shared_ptr<const Mechanism> mechanism, Placed placed,
-                                   std::span<const double> rates)
-    : parts_(std::make_shared<const Parts>(std::move(mechanism), std::move(placed), rates))
-{}
+GeneralisedState::GeneralisedState(std::shared_ptr<const StateParts> parts) : parts_(std::move(parts)) {}
 
 const State& GeneralisedState::state() const { return parts_->state; }
 const std::vector<double>& GeneralisedState::numbers() const { return parts_->placed.numbers; }
@@ -288,7 +287,7 @@ std::vector<double> GeneralisedState::accelerations(std::span<const double> forc
     return cholesky_solution(parts_->mass_factor(), left);
 }
 
-void GeneralisedState::Parts::check(std::span<const double> given, const std::string& what) const
+void StateParts::check(std::span<const double> given, const std::string& what) const
 {
     const auto n = static_cast<std::size_t>(mechanism->n_rates);
     if (given.size() == n && std::ranges::all_of(given, [](double x) { return std::isfinite(x); })) return;
@@ -299,10 +298,18 @@ void GeneralisedState::Parts::check(std::span<const double> given, const std::st
          given.size() == n ? "" : std::to_string(given.size()), "", "", "give one for each rate"});
 }
 
+const BodyTable& StateParts::table_of(int body) const
+{
+    if (body < 0 || body >= mechanism->model.n_bodies())
+        throw InputError({"body-unknown", "", "there is no such body", std::to_string(body), "", "",
+                          "the world does not move"});
+    return mechanism->bodies[static_cast<std::size_t>(body)];
+}
+
 std::vector<double> GeneralisedState::jacobian(int body, const Vector3& point) const
 {
     const auto n = static_cast<std::size_t>(parts_->mechanism->n_rates);
-    const BodyTable& table = parts_->mechanism->bodies[body];
+    const BodyTable& table = parts_->table_of(body);
     std::vector<double> rows(6 * n, 0.0);
     const Vector3 arm = directors(parts_->placed.X[body]) * point;
     for (std::size_t k = 0; k < n; ++k) {
@@ -321,7 +328,7 @@ std::vector<double> GeneralisedState::jacobian(int body, const Vector3& point) c
 
 std::vector<double> GeneralisedState::drift(int body, const Vector3& point) const
 {
-    const BodyTable& table = parts_->mechanism->bodies[body];
+    const BodyTable& table = parts_->table_of(body);
     const double* twist = parts_->drifts.data() + table.first;
     const Vector3 arm = directors(parts_->placed.X[body]) * point;
     Vector3 a{twist[0], twist[1], twist[2]}, alpha{};

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,12 @@
 #include "livens/dynamics/start/consistent_start.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+inline namespace dynamics_internal {
+struct [[gnu::visibility("hidden")]] Mechanism;
+struct [[gnu::visibility("hidden")]] Placed;
+struct [[gnu::visibility("hidden")]] StateParts;
+}   // namespace dynamics_internal
 
 /// What tells where a mechanism is: a coordinate of a joint, a coordinate of a body's reference point in the
 /// world, or the orientation of a body.
@@ -27,11 +34,6 @@ struct GeneralisedCoordinate {
 };
 
 class GeneralisedState;
-struct StateTarget;
-inline namespace dynamics_internal {
-struct Mechanism;
-struct Placed;
-}   // namespace dynamics_internal
 
 /// Independent coordinates of a model, which tell where all its bodies are as long as they are reached from
 /// where these are placed.
@@ -83,12 +85,19 @@ struct StateSlopes {
         accelerations;   ///< q'' at the state itself, by the loads: it need not be in equilibrium
 };
 
+/// Where a point of a body is to be.
+struct StateTarget {
+    int body = 0;
+    Vector3 point{};                      ///< in coordinates of the body
+    Vector3 position{};                   ///< m, world
+    std::optional<Matrix3> directors{};   ///< of the body, orthonormal; none: however it is turned
+};
+
 /// A state, and what follows from it. n are the rates; forces and rows of matrices are in their order,
 /// matrices row by row; N along displacements, N m along angles.
 class GeneralisedState {
 public:
-    GeneralisedState(std::shared_ptr<const Mechanism> mechanism, Placed placed,
-                     std::span<const double> rates);
+    explicit GeneralisedState(std::shared_ptr<const StateParts> parts);
 
     const State& state() const;                   ///< bodies of the model: X, V, time, turns of loads
     const std::vector<double>& numbers() const;   ///< angles with their turns
@@ -111,7 +120,7 @@ public:
     /// where M is not positive definite.
     std::vector<double> accelerations(std::span<const double> forces = {}) const;
     /// Velocity (rows 1 to 3) of a point of a body (its coordinates) and angular velocity (4 to 6), world
-    /// axes, by the rates: 6 x n. The last three of a point mass are zero.
+    /// axes, by the rates: 6 x n. The last three of a point mass are zero. Throws InputError `body-unknown`.
     std::vector<double> jacobian(int body, const Vector3& point = {}) const;
     /// Linear and angular acceleration of the same that is there without q'': J' q', 6 numbers.
     std::vector<double> drift(int body, const Vector3& point = {}) const;
@@ -123,21 +132,12 @@ public:
     StateSlopes slopes() const;
 
     /// The state at rest where a point of a body is at a target: led there in small steps along the straight
-    /// way, each the least change of the coordinates. Throws InputError `pose-unreachable` with what is left.
+    /// way, each the least change of the coordinates. Throws InputError `pose-unreachable` with what is left,
+    /// `coordinate-value`, `body-unknown`.
     GeneralisedState reaching(const StateTarget& target) const;
 
-    struct Parts;
-
 private:
-    std::shared_ptr<const Parts> parts_;
-};
-
-/// Where a point of a body is to be.
-struct StateTarget {
-    int body = 0;
-    Vector3 point{};                      ///< in coordinates of the body
-    Vector3 position{};                   ///< m, world
-    const Matrix3* directors = nullptr;   ///< of the body, orthonormal; null: however it is turned
+    std::shared_ptr<const StateParts> parts_;
 };
 
 }   // namespace gnu::visibility("default")]]livens

@@ -28,14 +28,17 @@ using Of = GeneralisedCoordinate::Of;
 
 constexpr double way_step = 0.1;   // of a coordinate, rad or lengths of the model
 constexpr int way_halvings = 12;
-constexpr double way_longest = 2000 * std::numbers::pi;   // likewise: some 63,000 steps
-constexpr double rows_closed = 1e-9;                      // |Phi| / scale
+constexpr double most_turns = 1000;       // which are counted in steps
+constexpr double farthest_turned = 1e6;   // of a body, by all coordinates, rad: likewise
+constexpr double most_lengths = 1e12;     // at once: more leaves few digits
+constexpr double rows_closed = 1e-9;      // |Phi| / scale
 constexpr double screws_closed = 1e-6;    // likewise where screws lead: far ways carry rounding along
 constexpr double newton_settled = 1e-9;   // a step of Newton's after which the next is below rounding
 constexpr double most_corrected = 0.3;    // by Newton's iteration, of a step: more may be another branch
 // A way that ends as near as this where rows close to this, is at a dead centre.
 constexpr double turning_near = 1e-4, turning = 1e-6;
-constexpr double most_moved = 1e6;   // of a body by a coordinate: rad or lengths, by the same
+constexpr double joints_well_held = 1e-4;   // smallest pivot of rows beside which a coordinate is to blame
+constexpr double most_moved = 1e6;          // of a body by a coordinate: rad or lengths, by the same
 
 void displace_bodies(const Mechanism& mechanism, std::span<const double> twists, Configuration& X)
 {
@@ -142,7 +145,7 @@ std::shared_ptr<Placed> led_at_once(const Mechanism& mechanism, const Placed& fr
     there->angles = from.angles;
     there->counted = from.counted;
     const double farthest = mechanism.farthest_turn(from.by_rates, way);
-    const int n = static_cast<int>(std::min(1e5, std::ceil(farthest / 2)));
+    const int n = static_cast<int>(std::ceil(farthest / 2));
     for (int i = 1; i < n; ++i)
         follow_turns(mechanism, along_screws(mechanism, from, way, static_cast<double>(i) / n), *there);
     follow_turns(mechanism, there->X, *there);
@@ -233,13 +236,18 @@ std::string where_it_ends(const Mechanism& mechanism, const Placed& last, std::s
 Complaint why_open(const Mechanism& mechanism, const Placed& last, std::span<const double> numbers)
 {
     int row = 0;
-    const double open = mechanism.open(nearly_closed(mechanism, last, numbers), &row);
+    const Configuration X = nearly_closed(mechanism, last, numbers);
+    const double open = mechanism.open(X, &row);
     const std::vector<double> way = mechanism.way(last.numbers, numbers);
     const std::string where = "the mechanism can be led to " + where_it_ends(mechanism, last, way);
     const std::string help = "give coordinates that the joints admit, or place the bodies nearer to them";
     const int turning_back = farthest_moving(mechanism, last);
-    if (open <= turning && mechanism.size_of(way) < turning_near)
-        return why_singular(mechanism, turning_back);
+    if (open <= turning && mechanism.size_of(way) < turning_near) {
+        const RowRank held = row_rank(mechanism.model, X, all_rows(mechanism.model));
+        const bool joints_hold = static_cast<int>(held.independent.size()) == mechanism.rank &&
+                                 held.smallest_pivot > joints_well_held;
+        return why_singular(mechanism, joints_hold ? turning_back : -1);
+    }
     if (open <= rows_closed)
         return {"loop-open",
                 "q[" + mechanism.coordinates[turning_back].name + "]",
@@ -294,25 +302,28 @@ std::vector<double> of_bodies(const Mechanism& mechanism, std::span<const double
     return numbers;
 }
 
-void refuse_far(const Mechanism& mechanism, std::span<const double> way)
+/// Throws where a coordinate goes farther than by `turns` or `lengths` of the model.
+void refuse_far(const Mechanism& mechanism, std::span<const double> way, double turns, double lengths)
 {
     int rate = 0;
-    for (int i = 0; i < static_cast<int>(mechanism.coordinates.size()); ++i)
+    for (int i = 0; i < static_cast<int>(mechanism.coordinates.size()); ++i) {
+        const std::string& name = mechanism.coordinates[i].name;
+        const double most =
+            mechanism.is_length(i) ? lengths * mechanism.length : turns * 2 * std::numbers::pi;
         for (int k = 0; k < mechanism.coordinates[i].n_rates(); ++k, ++rate)
-            if (!(std::abs(way[rate]) <= way_longest * mechanism.unit_of(i)))
-                throw InputError(
-                    {"coordinate-value", "q[" + mechanism.coordinates[i].name + "]",
-                     "coordinate '" + mechanism.coordinates[i].name +
-                         "' is too far from where the bodies are placed for a loop to be led there",
-                     to_text(way[rate], 3), "1000 turns or 6000 model lengths", "",
-                     "place the bodies nearer to the state, or leave whole turns out"});
+            if (!(std::abs(way[rate]) <= most))
+                throw InputError({"coordinate-value", "q[" + name + "]",
+                                  "coordinate '" + name + "' is too far from where the bodies are placed",
+                                  to_text(way[rate], 3), to_text(most, 3), "",
+                                  "place the bodies nearer to the state, or leave whole turns out"});
+    }
 }
 
 /// In steps, each as long as the rows close by it and little is corrected.
 Placed led_in_steps(const Mechanism& mechanism, Placed here, std::span<const double> numbers)
 {
     const std::vector<double> from = here.numbers, way = mechanism.way(from, numbers);
-    refuse_far(mechanism, way);
+    refuse_far(mechanism, way, most_turns, most_turns);
     const double whole = 1 / std::max(1.0, std::ceil(mechanism.size_of(way) / way_step));
     double length = whole, done = 0;
     std::optional<Complaint> why;
@@ -343,6 +354,10 @@ Placed lead(const Mechanism& mechanism, const Placed& from, std::span<const doub
 {
     const std::vector<double> way = mechanism.way(from.numbers, numbers);
     if (std::ranges::all_of(way, [](double one) { return one == 0; })) return from;
+    refuse_far(mechanism, way, most_turns, most_lengths);
+    if (!(mechanism.farthest_turn(from.by_rates, way) <= farthest_turned))
+        throw InputError({"coordinate-value", "q", "bodies turn too far from where they are placed", "",
+                          to_text(farthest_turned, 3) + " rad in all", "", "leave whole turns out"});
     if (std::shared_ptr<Placed> there = led_at_once(mechanism, from, way, numbers)) {
         settle_or_throw(mechanism, *there);
         return *there;

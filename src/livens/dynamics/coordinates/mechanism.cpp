@@ -141,11 +141,13 @@ std::vector<double> Mechanism::gone(std::span<const double> from, std::span<cons
     return all;
 }
 
-double Mechanism::unit_of(int coordinate) const
+bool Mechanism::is_length(int coordinate) const
 {
     const GeneralisedCoordinate& c = coordinates[coordinate];
-    return c.of == Of::place || (c.of == Of::joint && !rows[coordinate].is_angle) ? length : 1;
+    return c.of == Of::place || (c.of == Of::joint && !rows[coordinate].is_angle);
 }
+
+double Mechanism::unit_of(int coordinate) const { return is_length(coordinate) ? length : 1; }
 
 double Mechanism::size_of(std::span<const double> way) const
 {

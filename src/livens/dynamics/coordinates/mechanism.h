@@ -50,6 +50,7 @@ struct Mechanism {
     std::vector<double> way(std::span<const double> from, std::span<const double> to) const;
     /// `from` and a part of the way.
     std::vector<double> gone(std::span<const double> from, std::span<const double> way, double part) const;
+    bool is_length(int coordinate) const;
     /// What a coordinate is measured in: 1 rad, or a length of the model.
     double unit_of(int coordinate) const;
     /// The largest of a way: rad, or lengths of the model.

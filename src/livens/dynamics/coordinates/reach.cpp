@@ -44,7 +44,7 @@ public:
         PoseGap gap;
         gap.distance = norm(left);
         for (int i = 0; i < 3; ++i) gap.entries.push_back(left[i] / m_.length);
-        if (target_.directors == nullptr) return gap;
+        if (!target_.directors) return gap;
         const Vector3 turn = twist::turn_between(X, configuration({}, directors_there));
         gap.angle = norm(turn);
         gap.entries.insert(gap.entries.end(), turn.a, turn.a + 3);
@@ -109,11 +109,11 @@ private:
 {
     std::string what = "body '" + m.model.body_name(target.body) +
                        "' cannot be brought there: it comes within " + to_text(left.distance, 4) + " m";
-    if (target.directors != nullptr) what += " and " + to_text(left.angle, 4) + " rad";
+    if (target.directors) what += " and " + to_text(left.angle, 4) + " rad";
     throw InputError(
         {"pose-unreachable", "pose", what, "", "",
          "the way goes straight from where the body is, and the mechanism stays on its branch",
-         target.directors != nullptr
+         target.directors
              ? "give a pose within reach, leave the rotation out, or start from a state nearer to it"
              : "give a position within reach, or start from a state nearer to it"});
 }
@@ -123,13 +123,19 @@ private:
 GeneralisedState GeneralisedState::reaching(const StateTarget& target) const
 {
     const Mechanism& m = *parts_->mechanism;
+    parts_->table_of(target.body);
+    const double size =
+        norm(target.position) + norm(target.point) + norm(target.directors.value_or(Matrix3{}));
+    if (!std::isfinite(size))
+        throw InputError(
+            {"coordinate-value", "pose", "the pose is not finite", "", "", "", "give finite numbers"});
     Placed at = parts_->placed;
     const PoseLeading leading(m, target);
     const Matrix34& X = at.X[target.body];
-    const Matrix3 from = directors(X), to = target.directors == nullptr ? from : *target.directors;
+    const Matrix3 from = directors(X), to = target.directors.value_or(from);
     const Vector3 begin = X * point(target.point), way = target.position - begin;
     const Vector3 turn = twist::turn_between(X, configuration({}, to));
-    const double far = std::max(norm(way) / m.length, target.directors == nullptr ? 0 : norm(turn));
+    const double far = std::max(norm(way) / m.length, !target.directors ? 0 : norm(turn));
     const int n = static_cast<int>(std::clamp(std::ceil(far / pose_step), 1.0, 1e5));
     for (int i = 1; i < n; ++i) {
         const double part = static_cast<double>(i) / n;
@@ -140,7 +146,7 @@ GeneralisedState GeneralisedState::reaching(const StateTarget& target) const
     const PoseGap left = leading.follow(at, target.position, to, 300);
     if (!(left.size() <= pose_missed)) refuse_pose(m, target, left);
     const std::vector<double> rest(static_cast<std::size_t>(m.n_rates), 0.0);
-    return {parts_->mechanism, std::move(at), rest};
+    return GeneralisedState(std::make_shared<const StateParts>(parts_->mechanism, std::move(at), rest));
 }
 
 }   // namespace livens

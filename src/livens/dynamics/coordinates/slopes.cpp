@@ -15,7 +15,6 @@ namespace livens {
 namespace {
 
 using Of = GeneralisedCoordinate::Of;
-using Parts = GeneralisedState::Parts;
 
 constexpr double slope_step = 0.01;   // rad, lengths of the model, or these a second
 constexpr std::array<double, 3> sixth_order = {3.0 / 4, -3.0 / 20, 1.0 / 60};
@@ -35,7 +34,7 @@ std::vector<double> difference(double h, const Of_step& of)
 }
 
 /// Inverse dynamics with loads that are held, and the velocities X' of all bodies behind them.
-std::vector<double> balance_of(const Parts& parts, std::span<const double> accelerations,
+std::vector<double> balance_of(const StateParts& parts, std::span<const double> accelerations,
                                std::span<const Matrix34> loads)
 {
     std::vector<double> all = parts.less_loads(accelerations, loads);
@@ -43,7 +42,7 @@ std::vector<double> balance_of(const Parts& parts, std::span<const double> accel
     return all;
 }
 
-Parts parts_beside(const Parts& from, int rate, double by)
+StateParts parts_beside(const StateParts& from, int rate, double by)
 {
     const Mechanism& m = *from.mechanism;
     std::vector<double> way(from.rates.size(), 0.0);
@@ -53,7 +52,7 @@ Parts parts_beside(const Parts& from, int rate, double by)
 }
 
 /// What loads change by where bodies and their velocities change.
-std::vector<Matrix34> change_of_loads(const Parts& parts, std::span<const Matrix34> dX,
+std::vector<Matrix34> change_of_loads(const StateParts& parts, std::span<const Matrix34> dX,
                                       std::span<const Matrix34> dV)
 {
     const Mechanism& m = *parts.mechanism;
@@ -122,7 +121,7 @@ StateSlopes GeneralisedState::slopes() const
             const std::vector<double> by_rate = difference(h, [&](double by) {
                 std::vector<double> rates = parts_->rates;
                 rates[k] += by;
-                return balance_of(Parts(parts_->mechanism, parts_->placed, rates), slopes.accelerations,
+                return balance_of(StateParts(parts_->mechanism, parts_->placed, rates), slopes.accelerations,
                                   loads);
             });
             put(n + k, by_rate, std::vector<Matrix34>(n_bodies), dX);

@@ -9,11 +9,11 @@
 
 #include "livens/dynamics/coordinates/mechanism.h"
 
-namespace livens {
+namespace livens::inline dynamics_internal {
 
-struct GeneralisedState::Parts {
-    Parts(std::shared_ptr<const Mechanism> the_mechanism, Placed the_placed,
-          std::span<const double> the_rates);
+struct StateParts {
+    StateParts(std::shared_ptr<const Mechanism> the_mechanism, Placed the_placed,
+               std::span<const double> the_rates);
 
     std::shared_ptr<const Mechanism> mechanism;
     Placed placed;
@@ -34,6 +34,8 @@ struct GeneralisedState::Parts {
     DenseMatrix mass() const;
     /// Its Cholesky factor. Throws InputError.
     DenseMatrix mass_factor() const;
+    /// Throws InputError where there is no such body.
+    const BodyTable& table_of(int body) const;
     /// One finite number for each rate; throws InputError.
     void check(std::span<const double> given, const std::string& what) const;
 
@@ -42,4 +44,4 @@ private:
     std::vector<Matrix34> inertia_of(std::span<const double> accelerations) const;
 };
 
-}   // namespace livens
+}   // namespace livens::inline dynamics_internal
