@@ -221,6 +221,8 @@ TEST(CoupledJoints, WhatNoTeethCanDoIsRefused)
     expect_complaint([] { gear(1, 1e-5); }, "gear-ratio");
     EXPECT_NO_THROW(gear(1, 1.0 / 3));
     EXPECT_NO_THROW(gear(0.1, 0.7));
+    for (const double factor : {0.3333, 0.7777, 0.4321, 0.9871}) EXPECT_NO_THROW(gear(factor, 1)) << factor;
+    expect_complaint([] { gear(0.99999, 1); }, "gear-ratio");
     expect_complaint([] { gear(0, 1); }, "joint-row");
     expect_complaint([] { coupling_row({}, 0, 1, "none"); }, "joint-row");
     const auto turn = angle_between(0, direction({1, 0, 0}), direction({0, 1, 0}), 1, direction({1, 0, 0}));
