@@ -343,6 +343,20 @@ TEST(CoupledJoints, ACouplingSaysWhatIsWrongWithItsTerms)
     EXPECT_NEAR(made.rows[0].scale, 2 * pi, 1e-14);
 }
 
+TEST(CoupledJoints, ACouplingTouchesAsManyBodiesAsARow)
+{
+    const Bodies X(RowBodies::most + 1, configuration({}, identity<3>()));
+    std::vector<Joint> hinges;
+    for (int b = 0; b <= RowBodies::most; ++b)
+        hinges.push_back(revolute("hinge " + std::to_string(b), world, b,
+                                  joint_frame(world_configuration, X[0], {}, {0, 0, 1})));
+    std::vector<CoupledJoint> terms;
+    for (const Joint& hinge : hinges) terms.push_back({1, &hinge, "angle"});
+    expect_complaint([&] { coupling("many", terms, X); }, "coupling-terms");
+    terms.pop_back();
+    EXPECT_EQ(row_bodies(coupling("many", terms, X).rows[0]).size, RowBodies::most);
+}
+
 TEST(CoupledJoints, GearsAndRacksAreCouplingsOfTwo)
 {
     Random random(15);
