@@ -414,3 +414,23 @@ def test_a_motor_alone_moves_the_start(pendulum: lv.Model) -> None:
     refused["rod"].velocity = (0, 0, 0)   # a word on velocities: nothing is guessed
     with pytest.raises(lv.InputError, match="start-velocity"):
         lv.solve(refused, 0.1, elements=4)
+
+
+def test_a_differential_shares_its_torque() -> None:
+    m = lv.Model("differential")
+    for name in ("left", "right", "carrier"):
+        m.add_body(name, mass=1, inertia=(0.2, 0.2, 0.2))
+        m.add_revolute(f"{name} axle", "world", name, at=(0, 0, 0), axis=(0, 0, 1))
+    added = m.add_coupling("gears", {"left axle.angle": 1, "right axle.angle": 1, "carrier axle.angle": -2})
+    m.add_torque("engine", "carrier", value=(0, 0, 3))
+    m.add_torque("brake", "left", value=(0, 0, -1))
+    assert added.terms == {"left axle.angle": 1, "right axle.angle": 1, "carrier axle.angle": -2}
+    sol = lv.solve(m, 5, accuracy=1e-10)
+    # with l = c + d and r = c - d: 3 J c'' = 3 - 1 and 2 J d'' = -1
+    mean, half = (3 - 1) / 0.6, -1 / 0.4
+    assert sol["carrier axle"].angle[-1] == pytest.approx(mean * 12.5, rel=1e-11)
+    assert sol["left axle"].angle[-1] == pytest.approx((mean + half) * 12.5, rel=1e-11)
+    assert sol["gears"].torque[-1, 2] == pytest.approx(0.2 * mean - 3, rel=1e-11)   # on the carrier, named last
+    with pytest.raises(lv.InputError, match="would lock it") as caught:
+        m.add_coupling("one", {"left axle.angle": 1})
+    assert caught.value.code == "coupling-terms"

@@ -221,6 +221,8 @@ TEST(CoupledJoints, WhatNoTeethCanDoIsRefused)
     expect_complaint([] { gear(1, 1e-5); }, "gear-ratio");
     EXPECT_NO_THROW(gear(1, 1.0 / 3));
     EXPECT_NO_THROW(gear(0.1, 0.7));
+    for (const double factor : {0.3333, 0.7777, 0.4321, 0.9871}) EXPECT_NO_THROW(gear(factor, 1)) << factor;
+    expect_complaint([] { gear(0.99999, 1); }, "gear-ratio");
     expect_complaint([] { gear(0, 1); }, "joint-row");
     expect_complaint([] { coupling_row({}, 0, 1, "none"); }, "joint-row");
     const auto turn = angle_between(0, direction({1, 0, 0}), direction({0, 1, 0}), 1, direction({1, 0, 0}));
@@ -339,6 +341,20 @@ TEST(CoupledJoints, ACouplingSaysWhatIsWrongWithItsTerms)
     EXPECT_EQ(made.first, 0);
     EXPECT_EQ(made.second, 1);
     EXPECT_NEAR(made.rows[0].scale, 2 * pi, 1e-14);
+}
+
+TEST(CoupledJoints, ACouplingTouchesAsManyBodiesAsARow)
+{
+    const Bodies X(RowBodies::most + 1, configuration({}, identity<3>()));
+    std::vector<Joint> hinges;
+    for (int b = 0; b <= RowBodies::most; ++b)
+        hinges.push_back(revolute("hinge " + std::to_string(b), world, b,
+                                  joint_frame(world_configuration, X[0], {}, {0, 0, 1})));
+    std::vector<CoupledJoint> terms;
+    for (const Joint& hinge : hinges) terms.push_back({1, &hinge, "angle"});
+    expect_complaint([&] { coupling("many", terms, X); }, "coupling-terms");
+    terms.pop_back();
+    EXPECT_EQ(row_bodies(coupling("many", terms, X).rows[0]).size, RowBodies::most);
 }
 
 TEST(CoupledJoints, GearsAndRacksAreCouplingsOfTwo)

@@ -71,7 +71,7 @@ double common_measure(const std::vector<CoupledCoordinate>& terms)
         while (rest > rounding * largest)
             measure = std::exchange(rest, std::abs(std::remainder(measure, rest)));
     }
-    return std::round(largest / measure) <= 10000 ? measure : 0;
+    return measure * 10000.5 >= largest ? measure : 0;   // by half a part for rounding
 }
 
 Value angle_at(double factor, double c, double s)

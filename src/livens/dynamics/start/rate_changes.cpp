@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
+#include <string_view>
 #include <vector>
 
 #include "livens/base/text.h"
@@ -34,11 +36,12 @@ std::string told(const Vector3& v)
     return text + ")";
 }
 
-/// Joints that hold points together have no coordinate for how their bodies turn.
+/// Joints that hold points together have no coordinate for how their bodies turn. Couplings hold none.
 bool turns_unnamed(const Model& model, const Joint& joint)
 {
     const auto is_point = [&](int body) { return body != world && model.bodies()[body].is_point; };
-    return joint.coordinates.empty() && joint.type != "drive" && joint.type != "rod" &&
+    constexpr std::string_view others[] = {"drive", "rod", "coupling", "gear", "rack_and_pinion"};
+    return joint.coordinates.empty() && std::ranges::find(others, joint.type) == std::end(others) &&
            !is_point(joint.first) && !is_point(joint.second);
 }
 

@@ -106,7 +106,7 @@ inline constexpr LossKind multiplier{
     "joints",
     "multiplier of mimic was changed to the nearest ratio of whole numbers up to 10000",
     "",
-    false,
+    true,
     true};
 
 }   // namespace losses

@@ -9,6 +9,8 @@
 #include <limits>
 #include <utility>
 
+#include "livens/base/text.h"
+
 namespace livens::inline io_internal {
 
 namespace {
@@ -136,7 +138,9 @@ TableMaker UrdfJoints::coupling(const UrdfJoint& joint)
     const auto leader = std::ranges::find(file_.joints, mimic.joint, &UrdfJoint::name);
     double multiplier = mimic.multiplier;
     if (leader->turns() && joint.turns()) multiplier = ratio_of_angles(multiplier);
-    if (multiplier != mimic.multiplier) losses_.add(losses::multiplier, mimic.place, "'" + joint.name + "'");
+    if (multiplier != mimic.multiplier)
+        losses_.add(losses::multiplier, mimic.place,
+                    "'" + joint.name + "' by " + to_text(std::abs(multiplier - mimic.multiplier), 2));
     const auto coordinate = [&](const UrdfJoint& of) {
         return names_.at(of.name) + (of.turns() ? ".angle" : ".displacement");
     };

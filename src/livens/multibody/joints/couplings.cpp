@@ -141,7 +141,8 @@ Joint coupling(const std::string& name, const std::vector<CoupledJoint>& terms, 
         refuse_terms("coupling-terms", path,
                      "a coupling touches at most " + std::to_string(RowBodies::most) + " bodies",
                      std::to_string(bodies.size()), "each joint touches two, or one beside the world",
-                     "divide it: a slide without load that carries a part of the sum, in two couplings");
+                     "divide it into two couplings: a light body on a slide of its own carries the sum of "
+                     "one to the other");
     return coupled(name, "coupling", terms, path, X, scale);
 }
 
