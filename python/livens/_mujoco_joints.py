@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._losses import Loss, lost
-from ._mujoco_fields import BALL, HINGE, SLIDE, TINY, WORLD, array, is_off, name_of
+from ._mujoco_fields import BALL, HINGE, SLIDE, WORLD, array, is_off, name_of
 from ._tree import Table, schema
 
 if TYPE_CHECKING:
@@ -30,7 +30,6 @@ _RIGID = Loss("import-mended", "equality", "equalities", "rigid here (solref and
 _CURVED = lost("equality", "couplings are not kept that are not linear", many="equalities")
 _OTHER_EQUALITY = lost("equality", "equalities of flexible bodies, spatial tendons and distances are not kept", many="equalities")
 _SAME_BODY = Loss("import-lost", "equality", "equalities", "equalities within one body, or between bodies that do not move, are not needed")
-_OF_MANY = lost("equality", "couplings of more than two joints are not kept", many="equalities")
 _PINION = Loss("import-mended", "equality", "equalities", "couples two slides by two racks on a nearly massless pinion", names_all=True)
 _MOST_TEETH = 10000   # less one, with which a ratio is beside the bound
 _ROUNDED = Loss("import-mended", "equality", "equalities", "the ratio of angles is rounded to that of whole numbers below 10000", names_all=True)
@@ -263,39 +262,11 @@ def couple(p: Parts, name: str, terms: Mapping[int, float]) -> None:
     terms = _in_teeth(p, name, terms)
     if not terms:
         return None
-    joints = list(terms)
-    of = {j: p.coordinates[j].rpartition(".")[0] for j in joints}
-    if len(joints) == 1:
-        p.add("drive", {"name": name, "type": "joint", "joint": of[joints[0]], "value": float(p.d.qpos[p.m.jnt_qposadr[joints[0]]])})
+    if len(terms) == 1:
+        (j,) = terms
+        p.add("drive", {"name": name, "type": "joint", "joint": p.coordinates[j].rpartition(".")[0],
+                        "value": float(p.d.qpos[p.m.jnt_qposadr[j]])})
         return None
-    if any(kind["word"] == "coupling" for kind in schema().children["joint"]["kinds"]):
-        p.add("joint", {"name": name, "type": "coupling", "terms": Table({p.coordinates[j]: c for j, c in terms.items()}, p.place)})
-        return None
-    if len(joints) > 2:
-        return p.losses.add(_OF_MANY, name)
-    turning = [j for j in joints if p.m.jnt_type[j] == HINGE]
-    follows, leads = joints
-    ratio = -terms[leads] / terms[follows]
-    if len(turning) == 2:
-        p.add("joint", {"name": name, "type": "gear", "joints": (of[leads], of[follows]), "ratio": ratio})
-    elif turning:
-        slide = follows if turning[0] == leads else leads
-        p.add("joint", {"name": name, "type": "rack_and_pinion", "joints": (of[turning[0]], of[slide]),
-                        "radius": -terms[turning[0]] / terms[slide]})
-    else:
-        _add_pinion(p, name, leads, of[leads], of[follows], ratio)
+    p.add("joint", {"name": name, "type": "coupling", "terms": Table({p.coordinates[j]: c for j, c in terms.items()}, p.place)})
     return None
 
-
-def _add_pinion(p: Parts, name: str, leader: int, leads: str, follows: str, ratio: float) -> None:
-    """Of radius 1 m in the world, which one slide turns and the other is moved by."""
-    mass = TINY * p.smallest
-    pinion, shaft = p.names.of(f"pinion of {name}", "body"), p.names.of(f"shaft of {name}", "joint")
-    body: dict[str, Any] = {"name": pinion, "mass": mass, "inertia": (mass,) * 3, "visual": p.dot()}
-    if rate := float(p.d.qvel[p.m.jnt_dofadr[leader]]):
-        body["angular_velocity"] = (0.0, 0.0, rate)
-    p.add("body", body)
-    p.add("joint", {"name": shaft, "type": "revolute", "between": (WORLD, pinion), "at": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)})
-    p.add("joint", {"name": name, "type": "rack_and_pinion", "joints": (shaft, leads), "radius": 1.0})
-    p.add("joint", {"name": p.names.of(f"{name} 2", "joint"), "type": "rack_and_pinion", "joints": (shaft, follows), "radius": ratio})
-    p.losses.add(_PINION, name)
