@@ -116,6 +116,8 @@ TEST(Visual, IsRefusedWithWhatToWriteInstead)
     expect("{ box = [4, 2, 0.1]", "{ box = [4, 2, 0.1], sphere = 1", "shape", "keep one");
     expect("{ box = [4, 2, 0.1]", "{ mesh = \"a.stl\"", "mesh-unit", "add unit");
     expect("{ box = [4, 2, 0.1]", "{ mesh = \"a.stl\", unit = \"m\"", "mesh-file", "");
+    expect("{ box = [4, 2, 0.1]", "{ mesh = \"a.dae\", unit = \"mm\"", "mesh-unit", "unit = \"m\"");
+    expect("{ box = [4, 2, 0.1]", "{ mesh = \"a.DAE\", unit = \"m\"", "mesh-file", "");
 }
 
 /// A shape beside `inertia` is drawn and does nothing else: a primitive about the centre of mass, and what

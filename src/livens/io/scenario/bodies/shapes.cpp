@@ -8,6 +8,7 @@
 
 #include "livens/base/text.h"
 #include "livens/io/scenario/bodies/bodies.h"
+#include "livens/io/scenario/bodies/collada.h"
 #include "livens/io/scenario/bodies/density_fields.h"
 #include "livens/io/scenario/bodies/primitives.h"
 #include "livens/io/scenario/builder.h"
@@ -89,7 +90,14 @@ bool check_mesh(const Section& shape)
             {"files of meshes do not say what their numbers mean", "add unit = \"mm\", or \"m\""});
     if (shape.takes("densities") && !shape.at_most_one({"density_field", "densities"}, "mass-conflict"))
         return false;
-    if (unit_of_length(shape.text("unit")) > 0) return true;
+    const double unit = unit_of_length(shape.text("unit"));
+    if (is_collada(shape.text("mesh")) && unit > 0 && unit != 1)
+        return shape.error("unit", "mesh-unit",
+                           "'unit' of " + shape.label() + " is \"m\" for DAE files, not \"" +
+                               shape.text("unit") + "\"",
+                           {"a DAE file states its own unit, by which its numbers are converted to metres",
+                            "write unit = \"m\"; for another size add scale = .."});
+    if (unit > 0) return true;
     return shape.error("unit", "mesh-unit",
                        "'unit' of " + shape.label() + " must be a unit of length, not \"" +
                            shape.text("unit") + "\"");
