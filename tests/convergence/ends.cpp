@@ -198,6 +198,51 @@ TEST(LobattoEnds, EveryRateNearbyFindsTheMotion)
     }
 }
 
+/// Its start, marched on the same mesh, goes the same way.
+void expect_confirmed(const Forward& run, const Solution& s)
+{
+    const Solution march =
+        solve(run.model, {s.motion.at_end(0)}, make_time_mesh(0, run.end, run.n), lobatto(8, 1));
+    ASSERT_TRUE(march.report.converged()) << run.name << ": " << march.report.message;
+    EXPECT_LE(largest_difference(s.motion, march.motion), 1e-8) << run.name;
+}
+
+/// From rates 10 % off, where no guess leads Newton's iteration to a motion: the end is led from where a
+/// march arrives.
+TEST(LobattoEnds, AreLedWhereNewtonFindsNoWay)
+{
+    for (const double end : {1.0, 1.5}) {
+        const Forward run = forward("two bricks", two_bricks(), 0.5, end, 20);
+        const Solution s = solve(
+            run.model, {faster(run.start, 0.9), Known::positions, faster(run.finish, 0), Known::positions},
+            make_time_mesh(0, run.end, run.n), lobatto(8));
+        ASSERT_TRUE(s.report.converged()) << end << ": " << s.report.message;
+        EXPECT_EQ(s.report.rescued, 1) << "control: the first guess alone does not find it";
+        EXPECT_NE(s.report.notes.back().find("led"), std::string::npos) << s.report.notes.back();
+        for (int b = 0; b < run.model.n_bodies(); ++b)
+            EXPECT_LE(norm(s.motion.at_end(run.n).X[b] - run.finish.X[b]), 1e-12) << end;
+        expect_confirmed(run, s);
+    }
+}
+
+/// Momenta at a place that is guessed: a root that meets the part which joints leave to choose, and not the
+/// rest, is left for one that meets all.
+TEST(LobattoEnds, AllMomentaAreMetThatAreStated)
+{
+    for (const auto& [at_start, at_end] :
+         {std::pair{Known::positions, Known::momenta}, {Known::momenta, Known::positions}})
+        for (const double end : {1.0, 2.0}) {
+            const Forward run = forward("four-bar", four_bar(), 0.5, end, 40);
+            Solution s = recover(run, at_start, at_end, lobatto(8), run.n);
+            ASSERT_TRUE(s.report.converged()) << end << ": " << s.report.message;
+            expect_confirmed(run, s);
+            const State& found = at_end == Known::momenta ? last(s) : s.motion.at_end(0);
+            const State& given = at_end == Known::momenta ? run.finish : run.start;
+            for (int b = 0; b < run.model.n_bodies(); ++b)
+                EXPECT_LE(norm(found.V[b] - given.V[b]), 1e-6) << end;
+        }
+}
+
 /// Linear momentum and moment of momentum about the reference point: N^T V m.
 Numbers momentum_of(const Matrix4& mass, const Matrix34& X, const Matrix34& V)
 {

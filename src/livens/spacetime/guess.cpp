@@ -13,6 +13,7 @@
 #include "livens/diagnostics/acceptance.h"
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
+#include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/nodal/window.h"
 
@@ -145,23 +146,89 @@ Guess guess_between(const State& first, const State& last)
     return guess_steady(steady);
 }
 
-Guess guess_from_ends(const Model& model, const Ends& ends, std::span<const double> times)
+namespace {
+
+/// The march from a state that is complete, stated or guessed, at the near end.
+Guess march_from(const Model& model, const State& near, std::span<const double> times, bool from_start)
 {
-    const bool from_start = knows_positions(ends.at_start) || !knows_positions(ends.at_end);
-    const State &near = from_start ? ends.start : ends.end, &far = from_start ? ends.end : ends.start;
-    const Known at_far = from_start ? ends.at_end : ends.at_start;
     std::vector<double> march(times.begin(), times.end());
     if (!from_start) std::reverse(march.begin(), march.end());
-    const auto motion_from = [&](const State& begin) { return guess_from_state(model, begin, march).motion; };
-    if (knows_positions(at_far))
-        // Stated rates choose the way, for instance how many turns; without them the shortest way is taken.
-        return is_moving(near) ? bent(motion_from(near), near.t, far) : guess_between(ends.start, ends.end);
-    Guess motion = motion_from(near);
-    if (is_moving(near)) return motion;
-    // let go at rest, or with the rates of the far end: as comes nearer to the momenta known there
-    Guess other = motion_from(with_rates(near, far));
-    return missing_momentum(model, other(far.t), far) < missing_momentum(model, motion(far.t), far) ? other
-                                                                                                    : motion;
+    return guess_from_state(model, near, march).motion;
+}
+
+/// How far a motion misses what is known at an end, in lengths, radians, or momenta of some speed.
+double missing(const Model& model, const Guess& motion, const State& known, Known given)
+{
+    const State reached = motion(known.t);
+    if (!knows_positions(given)) return missing_momentum(model, reached, known);
+    return distance_between(reached.X, known.X, model.length());
+}
+
+}   // namespace
+
+std::vector<GuessFromEnds> guesses_from_ends(const Model& model, const Ends& ends,
+                                             std::span<const double> times)
+{
+    struct Candidate {
+        GuessFromEnds guess;
+        bool is_at_rest = false;
+        double off = 0;
+    };
+    std::vector<Candidate> found;
+    const bool has_places = knows_positions(ends.at_start) && knows_positions(ends.at_end);
+    const bool is_start_first = knows_positions(ends.at_start) || !knows_positions(ends.at_end);
+    for (const bool from_start : {is_start_first, !is_start_first}) {
+        const State &near = from_start ? ends.start : ends.end, &far = from_start ? ends.end : ends.start;
+        const Known given = from_start ? ends.at_end : ends.at_start;
+        // Between places stated rates choose the way, for instance how many turns; without them the shortest.
+        if (has_places && !is_moving(near)) continue;
+        std::vector<State> begins{near};
+        // let go at rest, or with the rates of the far end
+        if (!is_moving(near) && is_moving(far)) begins.push_back(with_rates(near, far));
+        const auto first = static_cast<std::ptrdiff_t>(found.size());
+        for (const State& begin : begins) {
+            const Guess march = march_from(model, begin, times, from_start);
+            const bool is_bent = knows_positions(given);
+            found.push_back({{is_bent ? bent(march, near.t, far) : march, from_start},
+                             !is_moving(near),
+                             missing(model, march, far, given)});
+        }
+        std::stable_sort(found.begin() + first, found.end(),
+                         [](const Candidate& a, const Candidate& b) { return a.off < b.off; });
+    }
+    std::ranges::stable_sort(found, {}, &Candidate::is_at_rest);
+    std::vector<GuessFromEnds> guesses;
+    for (const Candidate& candidate : found) guesses.push_back(candidate.guess);
+    if (guesses.empty()) guesses.push_back({guess_between(ends.start, ends.end), true});
+    return guesses;
+}
+
+GuessFromEnds march_to_lead(const Model& model, const Ends& ends, std::span<const double> times, int attempt)
+{
+    struct Way {
+        double factor;   // of stated rates; 0: those of steady motions
+        bool is_other;   // from the other end
+        const char* words;
+    };
+    constexpr Way ways[] = {{1, false, "with the stated rates"},
+                            {1, true, "with the stated rates"},
+                            {0, false, "with the rates of steady motions between the ends"},
+                            {0.7, false, "with 0.7 of the stated rates"},
+                            {1.3, false, "with 1.3 of the stated rates"},
+                            {0.4, false, "with 0.4 of the stated rates"},
+                            {1.6, false, "with 1.6 of the stated rates"}};
+    const bool is_start_first = is_moving(ends.start) || !is_moving(ends.end);
+    for (; attempt < static_cast<int>(std::size(ways)); ++attempt) {
+        const Way& way = ways[attempt];
+        const bool from_start = is_start_first != way.is_other;
+        State near = from_start ? ends.start : ends.end;
+        if (!is_moving(near) && way.factor != 0 && attempt > 0) continue;
+        if (way.factor == 0) near = with_rates(near, guess_between(ends.start, ends.end)(near.t));
+        for (Matrix34& V : near.V)
+            if (way.factor > 0) V = way.factor * V;
+        return {march_from(model, near, times, from_start), from_start, way.words, attempt + 1};
+    }
+    return {};
 }
 
 }   // namespace livens::inline spacetime_internal

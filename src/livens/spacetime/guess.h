@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "livens/dynamics/rows/tables.h"
 #include "livens/spacetime/march/ends.h"
@@ -26,8 +27,21 @@ Guess guess_steady(const State& state);
 /// Points on straight lines and directors turning steadily from the places of one state to those of another.
 Guess guess_between(const State& first, const State& last);
 
-/// For conditions at both ends: from what is known, with what is stated beside it as a guess. Where a state
-/// at one end is complete that way, a march from it, bent steadily onto what is known at the other end.
-Guess guess_from_ends(const Model& model, const Ends& ends, std::span<const double> times);
+/// For conditions at both ends; made from one of them on.
+struct GuessFromEnds {
+    Guess motion;
+    bool from_start = true;
+    const char* rates = "";   ///< in words, of marches to lead from
+    int next = 0;             ///< attempt after that
+};
+/// From what is known, with what is stated beside it as a guess: a march from each end where that is enough,
+/// bent steadily onto positions that are known at the other end; momenta are met as a march has them. From
+/// ends that move first, those that miss least before others; between places without rates, steady motions.
+std::vector<GuessFromEnds> guesses_from_ends(const Model& model, const Ends& ends,
+                                             std::span<const double> times);
+
+/// Marches that conditions at the other end may be led from: with the rates that are stated, with those of
+/// steady motions between the ends, and with others. Null behind the last one.
+GuessFromEnds march_to_lead(const Model& model, const Ends& ends, std::span<const double> times, int attempt);
 
 }   // namespace livens::inline spacetime_internal

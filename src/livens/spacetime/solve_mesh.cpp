@@ -17,6 +17,7 @@
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/accuracy/turning_springs.h"
 #include "livens/spacetime/guess.h"
+#include "livens/spacetime/leading.h"
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/mixed/window.h"
@@ -63,13 +64,9 @@ public:
         : model_(model), problem_(problem), mesh_(mesh), ends_(ends), method_(method), window_(window)
     {}
 
-    WindowOptions::Proposal operator()(int first, int last, int attempt) const
+    WindowOptions::Proposal operator()(int first, int last, int attempt)
     {
-        if (!ends_.has_state()) {
-            if (attempt == 0 && problem_.guess) return {problem_.guess, false};
-            if (attempt > (problem_.guess ? 1 : 0)) return {};
-            return {guess_from_ends(model_, ends_, instants(mesh_, ends_, first, last, 1)), false};
-        }
+        if (!ends_.has_state()) return {between_ends(), false};
         const State state = window_.at(ends_.is_backwards() ? last : first);
         const auto* mixed = std::get_if<Mixed>(&method_);
         if (mixed != nullptr && (attempt > 0 || mixed->first_guess == Mixed::FirstGuess::steady))
@@ -81,13 +78,46 @@ public:
         return {std::move(march.motion), march.is_closed};
     }
 
+    /// How the last guess was found, if it was led.
+    const std::string& told() const { return told_; }
+
 private:
+    /// Plain guesses first, then ends that are led: theory.md, "Finding the motion". What was proposed before
+    /// is not proposed again.
+    Guess between_ends()
+    {
+        const int attempt = n_plain_++;
+        if (attempt == 0 && problem_.guess) return problem_.guess;
+        if (plain_.empty()) {
+            plain_ = guesses_from_ends(model_, ends_, mesh_.ends);
+            if (problem_.guess) plain_.insert(plain_.begin(), GuessFromEnds{});   // tried before
+        }
+        if (attempt < static_cast<int>(plain_.size())) return plain_[attempt].motion;
+        const auto* mixed = std::get_if<Mixed>(&method_);
+        const int degree = mixed != nullptr ? mixed->witness().degree : rule_of(method_).degree;
+        while (true) {
+            const GuessFromEnds march = march_to_lead(model_, ends_, mesh_.ends, lead_);
+            if (!march.motion) break;
+            lead_ = march.next;
+            const Leading led = lead(model_, ends_, mesh_, degree, march.motion, march.from_start);
+            if (!led.motion) continue;
+            told_ = "found by an end that was led, in " + std::to_string(led.steps) +
+                    " steps, from where a march from the " + (march.from_start ? "start " : "end ") +
+                    march.rates + " arrives";
+            return led.motion;
+        }
+        return {};
+    }
+
     const Model& model_;
     const Problem& problem_;
     const TimeMesh& mesh_;
     const Ends& ends_;
     const Method& method_;
     const Window& window_;
+    std::vector<GuessFromEnds> plain_;
+    int n_plain_ = 0, lead_ = 0;   // guesses, and marches that were led, so far
+    std::string told_;
 };
 
 /// What an iteration leaves has to be far below the errors that two motions are compared for.
@@ -122,7 +152,8 @@ WindowOptions options_of_mesh(const Model& model, const Ends& ends, const Method
         w.may_divide = options.divide && ends.has_state();
         if (w.may_divide) w.criteria = {acceptable_velocity_jump, true, true};
     }
-    if (!ends.has_state()) {
+    w.has_state = ends.has_state();
+    if (!w.has_state) {
         w.length = 0;
         w.may_split = false;
         w.advice = "a shorter time, more elements, ends that are nearer, or a better guess (rates given "
@@ -190,6 +221,31 @@ void refuse_undetermined(Window& window, ConditionNumbersOfLast& last, SolveRepo
                      "another duration, or the state at one end";
 }
 
+/// Of momenta at a place that is not known, solving compares the part that joints leave to choose: a motion
+/// may meet that and not the rest. Then others are looked for; where there is none, the first one is told.
+std::unique_ptr<Window> find_met(const Model& model, const Ends& ends, std::unique_ptr<Window> window,
+                                 const std::function<std::unique_ptr<Window>(SolveReport&)>& next,
+                                 SolveReport& report)
+{
+    constexpr int most = 8;
+    const auto is_met = [&](Window& of) {
+        const Motion* motion = of.monitor().so_far();
+        return motion == nullptr || unmet(model, ends, *motion, {}).empty();
+    };
+    if (!report.converged() || !(knows_momenta(ends.at_start) || knows_momenta(ends.at_end)) ||
+        is_met(*window))
+        return window;
+    for (int i = 0; i < most; ++i) {
+        SolveReport other;
+        std::unique_ptr<Window> found = next(other);
+        if (!other.converged()) break;
+        if (!is_met(*found)) continue;
+        report = std::move(other);
+        return found;
+    }
+    return window;
+}
+
 /// The equations of a march as those of one window, at its motion: of all elements, or of radau the last one.
 void measure_at_solution(const ModelTables& tables, const Motion& motion, const Ends& ends,
                          const ElementRule& rule, SolveReport& report, const std::function<bool()>& goes_on)
@@ -217,15 +273,30 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     std::ranges::sort(mesh.required);
     const bool is_mixed = std::holds_alternative<Mixed>(method);
     const ModelTables tables(model, ends.independent, is_mixed, problem.prepared->pattern(model));
-    const std::unique_ptr<Window> window =
-        make_window(tables, mesh, ends, method, options.look_at_laws, problem.near);
+    const auto make = [&] {
+        return make_window(tables, mesh, ends, method, options.look_at_laws, problem.near);
+    };
+    std::unique_ptr<Window> window = make();
     Solution solution;
     solution.method = method;
     SolveReport& report = solution.report;
     report.notes = ends.notes;
     WindowOptions w = options_of_mesh(model, ends, method, options);
-    w.propose = Proposals(model, problem, mesh, ends, method, *window);
+    Proposals proposals(model, problem, mesh, ends, method, *window);
+    w.propose = std::ref(proposals);
     solve_windows(*window, mesh, w, report);
+    if (!ends.has_state()) {
+        window = find_met(
+            model, ends, std::move(window),
+            [&](SolveReport& other) {
+                other.notes = ends.notes;
+                std::unique_ptr<Window> one = make();
+                solve_windows(*one, mesh, w, other);
+                return one;
+            },
+            report);
+        if (report.converged() && !proposals.told().empty()) report.notes.push_back(proposals.told());
+    }
     ConditionNumbersOfLast last(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
     if (!ends.has_state() && !is_mixed && problem.is_determination_asked && report.converged())
         refuse_undetermined(*window, last, report);

@@ -18,6 +18,9 @@ struct Ends {
     std::vector<int> independent;   ///< rows, chosen where X is known
     std::vector<int> redundant;
     std::vector<std::string> notes;
+    /// Momenta that are known at an end which is led: this share of the way from those of another state.
+    State led_from{};
+    double led_share = 1;
 
     bool has_state() const { return at_start == Known::state || at_end == Known::state; }
     /// Windows follow each other from the end of time.

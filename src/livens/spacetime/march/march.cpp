@@ -88,6 +88,7 @@ void March::run()
     }
     window_.describe(report_);
     counts_.tolerance = options_.controller != nullptr ? 1 : options_.solve.tolerance;
+    counts_.has_state = options_.has_state;
     add_notes(report_, counts_);
 }
 

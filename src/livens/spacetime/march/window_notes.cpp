@@ -131,8 +131,7 @@ void add_notes(SolveReport& report, const WindowCounts& counts)
     if (counts.rounded > 0 && counts.tolerance < finest_tolerance)
         report.notes.push_back("the tolerance " + to_text(counts.tolerance, 6) +
                                " is below rounding: " + count(counts.rounded, "window") + " of " +
-                               std::to_string(report.iterations.size()) +
-                               " ended at rounding level");
+                               std::to_string(report.iterations.size()) + " ended at rounding level");
     if (counts.splits > 0)
         report.notes.push_back(count(counts.splits, "window") +
                                " failed as a whole and were solved in halves");
@@ -140,17 +139,16 @@ void add_notes(SolveReport& report, const WindowCounts& counts)
         report.notes.push_back("elements end at " + count(counts.bends, "instant") +
                                " where a law of a load bends or jumps");
     if (report.divided > 0)
-        report.notes.push_back(
-            count(report.divided, "element") +
-            " were too long for the motion and were bisected, the first near t = " +
-            to_text(report.divided_at, 6) + " s");
+        report.notes.push_back(count(report.divided, "element") +
+                               " were too long for the motion and were bisected, the first near t = " +
+                               to_text(report.divided_at, 6) + " s");
     if (report.shifted > 0)
         report.notes.push_back(
             count(report.shifted, "element end") +
             " fell elsewhere than asked for, to keep nodes off singular positions of the joints, the "
             "first near t = " +
             to_text(report.shifted_at, 6) + " s");
-    if (report.rescued > 0)
+    if (report.rescued > 0 && counts.has_state)
         report.notes.push_back(
             count(report.rescued, "window") + " of " + std::to_string(report.iterations.size()) +
             " needed an initial guess from many small elements; more elements would be cheaper");

@@ -18,9 +18,10 @@ double distance_between(std::span<const Matrix34> X, std::span<const Matrix34> o
 /// What the report itself does not hold.
 struct WindowCounts {
     double tolerance = 0;
-    int rounded = 0;   ///< windows that ended by rounding, short of the tolerance
-    int splits = 0;    ///< windows that were solved in halves
-    int bends = 0;     ///< element ends where a law of a load bends
+    int rounded = 0;         ///< windows that ended by rounding, short of the tolerance
+    int splits = 0;          ///< windows that were solved in halves
+    int bends = 0;           ///< element ends where a law of a load bends
+    bool has_state = true;   ///< at one end of time: guesses are marches from there
 };
 void add_notes(SolveReport& report, const WindowCounts& counts);
 

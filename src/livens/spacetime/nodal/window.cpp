@@ -64,12 +64,17 @@ bool NodalWindow::open(int first, int last, SolveReport& report)
 /// Six numbers a body, about its reference point.
 void NodalWindow::set_momenta(const State& given, std::vector<double>& momenta) const
 {
-    std::vector<double>& P = momenta;
+    const double share = given.t == ends_.led_from.t ? ends_.led_share : 1;
     for (int b = 0; b < tables_.n_bodies(); ++b) {
-        const Matrix34 of_body = given.V[b] * tables_.model->bodies()[b].mass;
-        double six[6];
-        twist::rows(given.X[b].a, of_body.a, six);
-        std::copy_n(six, tables_.bodies[b].dofs, P.begin() + tables_.bodies[b].first);
+        double six[6], before[6] = {};
+        const auto momenta_of = [&](const State& state, double* to) {
+            const Matrix34 of_body = state.V[b] * tables_.model->bodies()[b].mass;
+            twist::rows(state.X[b].a, of_body.a, to);
+        };
+        momenta_of(given, six);
+        if (share != 1) momenta_of(ends_.led_from, before);
+        for (int i = 0; i < tables_.bodies[b].dofs; ++i)
+            momenta[tables_.bodies[b].first + i] = share * six[i] + (1 - share) * before[i];
     }
 }
 

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ends that are led from where a motion arrives to where it shall.
+#pragma once
+
+#include "livens/spacetime/march/ends.h"
+#include "livens/spacetime/march/window.h"
+#include "livens/time/time_mesh.h"
+
+namespace livens::inline spacetime_internal {
+
+/// How a motion was led.
+struct Leading {
+    Guess motion{};     ///< that meets both ends; empty: it was not found
+    double share = 0;   ///< of the way that was gone
+    int steps = 0;      ///< solutions, with those that failed
+};
+
+/// A motion of lobatto(degree) that meets what is known at both ends, from one that meets what is known at
+/// one: the other end goes from what that motion has there to what is stated, in steps that grow while they
+/// succeed and are halved where they fail, each begun with what two motions before foretell. `from_start`:
+/// the end of time is led, else its start.
+Leading lead(const Model& model, const Ends& ends, const TimeMesh& mesh, int degree, const Guess& begin,
+             bool from_start);
+
+}   // namespace livens::inline spacetime_internal
