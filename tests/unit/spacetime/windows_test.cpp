@@ -399,6 +399,7 @@ TEST(Guess, FromBothEndsMeetsWhatIsKnown)
     ends.start = model.start();
     ends.end = march(0.3);
     ends.end.t = 0.3;
+    for (Matrix34& V : ends.end.V) V = {};
     const Guess still = guesses_from_ends(model, ends, times)[0].motion;
     ends.start.V[1] = rate(ends.start.X[1], {0, 0, 0}, {0.1, 0, 0});
     const Guess moving = guesses_from_ends(model, ends, times)[0].motion;
