@@ -50,7 +50,7 @@ private:
     bool reflect_column(int k);
 
     int n_rows_ = 0, n_pivots_ = 0, width_ = 0;
-    int n_first_ = 0, failed_ = -1;
+    int failed_ = -1;
     std::vector<double> a_;
     std::vector<int> exchanged_, reach_;   // of pivots: the row taken; of rows: columns from here on are zero
     std::vector<char> is_first_;           // rows that pivots come from while they can
