@@ -108,8 +108,38 @@ std::string of_singular_end(double t)
            "determined there; try: moving that instant slightly";
 }
 
+namespace {
+
+/// Where a function of a row ends and the motion is about to leave it; empty: nowhere.
+std::string edge_ahead(const Model& model, const State& at)
+{
+    constexpr double near = 1e-3;   // of what the margin is measured by
+    std::vector<Matrix34> X = at.X;
+    const double step = 1e-6 * model.length();
+    double speed = 0;
+    for (const Matrix34& v : at.V) speed = std::max(speed, norm(v));
+    // Looked at from a little before: behind its end a span would grow again.
+    for (std::size_t b = 0; b < X.size() && speed > 0; ++b) X[b] -= step / speed * at.V[b];
+    for (int r = 0; r < model.n_rows(); ++r) {
+        const ConstraintRow& row = model.row(r);
+        std::size_t first = 0;
+        for (std::size_t m = 0; m < row.edges.size(); first += row.functions[m].n, ++m) {
+            const FunctionEdge& edge = row.edges[m];
+            const double here = edge.margin(function_point(row, row.functions[m], first, at.X));
+            const double before = edge.margin(function_point(row, row.functions[m], first, X));
+            if (here <= near * edge.size && here < before) return edge.what;
+        }
+    }
+    return "";
+}
+
+}   // namespace
+
 std::string of_locking(const Model& model, const State& first, const State& last)
 {
+    if (const std::string edge = edge_ahead(model, last); !edge.empty())
+        return edge + " near t = " + to_text(last.t, 6) +
+               " s; try: an earlier end, or lengths, loads or starts that keep away from there";
     const Lock lock = joints_that_lock(model, first, last);
     if (lock.empty()) return {};
     std::vector<std::string> driven, held;
@@ -131,8 +161,7 @@ void add_notes(SolveReport& report, const WindowCounts& counts)
     if (counts.rounded > 0 && counts.tolerance < finest_tolerance)
         report.notes.push_back("the tolerance " + to_text(counts.tolerance, 6) +
                                " is below rounding: " + count(counts.rounded, "window") + " of " +
-                               std::to_string(report.iterations.size()) +
-                               " ended at rounding level");
+                               std::to_string(report.iterations.size()) + " ended at rounding level");
     if (counts.splits > 0)
         report.notes.push_back(count(counts.splits, "window") +
                                " failed as a whole and were solved in halves");
@@ -140,10 +169,9 @@ void add_notes(SolveReport& report, const WindowCounts& counts)
         report.notes.push_back("elements end at " + count(counts.bends, "instant") +
                                " where a law of a load bends or jumps");
     if (report.divided > 0)
-        report.notes.push_back(
-            count(report.divided, "element") +
-            " were too long for the motion and were bisected, the first near t = " +
-            to_text(report.divided_at, 6) + " s");
+        report.notes.push_back(count(report.divided, "element") +
+                               " were too long for the motion and were bisected, the first near t = " +
+                               to_text(report.divided_at, 6) + " s");
     if (report.shifted > 0)
         report.notes.push_back(
             count(report.shifted, "element end") +
