@@ -156,6 +156,8 @@ def add_equalities(p: Parts) -> None:
         elif kind == _TENDON and (terms := [fixed_terms(m, int(t)) if t >= 0 else {} for t in (m.eq_obj1id[e], m.eq_obj2id[e])])[0] \
                 and (terms[1] or m.eq_obj2id[e] < 0):
             _add_coupling(p, e, *terms)
+        elif kind == _TENDON and m.eq_obj2id[e] < 0 and (over := rope_over(p, int(m.eq_obj1id[e]))) is not None:
+            _add_rope(p, e, over)
         else:
             p.losses.add(_OTHER_EQUALITY, name_of(m, "eq", e))
 
@@ -169,6 +171,35 @@ def fixed_terms(m: Any, t: int) -> dict[int, float]:
         joint = int(m.wrap_objid[w])
         terms[joint] = terms.get(joint, 0.0) + float(m.wrap_prm[w])
     return terms
+
+
+_SITE = 3   # mjWRAP_SITE
+
+
+def rope_over(p: Parts, t: int) -> list[Table] | None:
+    """The sites that a tendon runs over, as points of a rope; None for one that wraps around something, or has no length."""
+    m, d = p.m, p.d
+    over: list[Table] = []
+    ends: list[Any] = []
+    for w in range(m.tendon_adr[t], m.tendon_adr[t] + m.tendon_num[t]):
+        if m.wrap_type[w] != _SITE:
+            return None
+        site = int(m.wrap_objid[w])
+        body = int(p.owner[m.site_bodyid[site]])
+        over.append(Table({"body": p.body_names[body], "point": p.in_body(body, d.site_xpos[site])}, p.place))
+        ends.append(np.array(d.site_xpos[site]))
+    moves = len({at["body"] for at in over}) > 1
+    return over if moves and all(np.linalg.norm(b - a) > 1e-9 for a, b in zip(ends, ends[1:])) else None
+
+
+def _add_rope(p: Parts, e: int, over: list[Table]) -> None:
+    """length = length at qpos0 + a0."""
+    m = p.m
+    length = float(m.tendon_length0[m.eq_obj1id[e]] + m.eq_data[e][0])
+    name = p.named("eq", e, "joint")
+    p.add("joint", {"name": name, "type": "rod", "over": over, "length": length})
+    p.root["start"] = Table({"initial": "project"}, p.place)   # the pose need not close it
+    p.losses.add(_RIGID, name)
 
 
 def _ends(p: Parts, e: int) -> list[tuple[int, Any, Any]]:
@@ -221,7 +252,7 @@ def _add_coupling(p: Parts, e: int, follows: Mapping[int, float], leads: Mapping
     poly = [float(x) for x in m.eq_data[e][:5]]
     name = name_of(m, "eq", e)
     if any(poly[2:]):
-        return p.losses.add(_CURVED, name)
+        return _add_law(p, e, follows, leads, poly)
     terms = dict(follows)
     for j, factor in leads.items():
         terms[j] = terms.get(j, 0.0) - poly[1] * factor
@@ -236,6 +267,25 @@ def _add_coupling(p: Parts, e: int, follows: Mapping[int, float], leads: Mapping
     name = p.named("eq", e, "coupling")
     p.losses.add(_RIGID, name)
     return couple(p, name, terms)
+
+
+def _add_law(p: Parts, e: int, follows: Mapping[int, float], leads: Mapping[int, float], poly: list[float]) -> None:
+    """follows - its own at qpos0 = a0 + a1 x + a2 x^2 + .., x = leads - its own at qpos0."""
+    m = p.m
+    if len(follows) != 1 or len(leads) != 1 or any(j not in p.coordinates for j in (*follows, *leads)) or set(follows) == set(leads):
+        return p.losses.add(_CURVED, name_of(m, "eq", e))
+    (follower, factor), (leader, by) = next(iter(follows.items())), next(iter(leads.items()))
+    start, start_of_leader = (float(m.qpos0[m.jnt_qposadr[j]]) for j in (follower, leader))
+    word = p.coordinates[leader].rpartition(".")[2]
+    x = f"({by!r}*({word} - ({start_of_leader!r})))"
+    sum_of = " + ".join([f"{factor * start + poly[0]!r}", *(f"({c!r})*{x}^{k}" for k, c in enumerate(poly) if k and c)])
+    name = p.named("eq", e, "coupling")
+    p.add("joint", {"name": name, "type": "coupling", "terms": Table({p.coordinates[follower]: factor}, p.place),
+                    "law": Table({"of": p.coordinates[leader], "expression": sum_of}, p.place)})
+    if m.eq_type[e] != _JOINT:   # followers of joints are put where the law has them
+        p.root["start"] = Table({"initial": "project"}, p.place)
+    p.losses.add(_RIGID, name)
+    return None
 
 
 def _in_teeth(p: Parts, name: str, terms: Mapping[int, float]) -> dict[int, float]:

@@ -310,7 +310,7 @@ class JointSeries(Part):
             if name in (known, known + "_rate"):
                 column = "coordinate" if name == known else "coordinate_rate"
                 return self._series._shaped(self._series._scalars()[column][:, self._first + i])
-        if name in ("effort", "power"):
+        if name in ("effort", "power", "tension"):
             column = f"{name} {self._index}"
             if column in self._series._result.drive_columns:
                 return self._series._shaped(self._series._drives()[column][:, 0])
@@ -328,7 +328,7 @@ class JointSeries(Part):
 
     def _names(self) -> list[str]:
         names = [name + end for name in self.coordinates for end in ("", "_rate", "_acceleration")]
-        drives = [key for key in ("effort", "power") if f"{key} {self._index}" in self._series._result.drive_columns]
+        drives = [key for key in ("effort", "power", "tension") if f"{key} {self._index}" in self._series._result.drive_columns]
         return [*names, "force", "torque", *drives, *self._efforts()]
 
     def _efforts(self) -> dict[str, LoadSeries]:
@@ -341,8 +341,8 @@ class JointSeries(Part):
         """The unit of an attribute: ``"N m"``."""
         if name in self._efforts():
             return self._efforts()[name].unit("effort")
-        if name == "effort":
-            return str(self._series._result.drive_columns[f"effort {self._index}"])
+        if name in ("effort", "tension"):
+            return str(self._series._result.drive_columns[f"{name} {self._index}"])
         return super().unit(name)
 
     def force_in(self, body: str | Entry | Part) -> Floats:

@@ -103,6 +103,20 @@ LoadCase spring_case(const std::string& what, int second, void (*change)(SpringD
             }};
 }
 
+/// A rope that passes bodies, and the world, at the places of `on`; `change` takes parts of its law away.
+LoadCase rope_case(const std::string& what, const std::vector<int>& on, void (*change)(SpringDamper&))
+{
+    return {"rope_spring", what, [=](Random& random) {
+                SpringDamper law = spring(random);
+                law.stiffness *= 0.1;   // ropes are long
+                change(law);
+                std::vector<BodyPoint> over;
+                for (const int body : on) over.push_back({body, 3 * random.vector()});
+                const std::vector<Matrix34> X(4, configuration({}, identity<3>()));
+                return rope_spring("l", over, law, X);
+            }};
+}
+
 /// A pipe between two bodies that stand anywhere, or between one and the world.
 struct Pipe {
     std::array<Matrix34, 2> X;
@@ -353,6 +367,13 @@ const std::vector<LoadCase>& load_cases()
         spring_case("spring without free length", 1,
                     [](SpringDamper& law) { law.damping = law.free_length = 0; }),
         spring_case("damper", 1, [](SpringDamper& law) { law.stiffness = 0; }),
+        rope_case("rope over two bodies", {0, 1, 1, 0}, [](SpringDamper&) {}),
+        rope_case("rope over a body and the world", {world, 0, world},
+                  [](SpringDamper& law) { law.preload = 2; }),
+        rope_case("rope over three bodies and the world", {0, world, 1, 2, 1, 0}, [](SpringDamper&) {}),
+        rope_case("rope without a damper", {0, 1, 2, 3, 0}, [](SpringDamper& law) { law.damping = 0; }),
+        rope_case("rope by a law", {0, 1, world, 2},
+                  [](SpringDamper& law) { law.law = progressive_spring(0.3, 1e-3); }),
         along_case("joint_spring", "spring along a slide", 1, "displacement", any_joint_spring),
         along_case("joint_spring", "spring along a slide of the world", world, "displacement",
                    any_joint_spring),

@@ -50,9 +50,9 @@ void add_loads(const Model& model, Instant at, std::span<const Matrix34> X, std:
     const UnwrappedAngles turns(model);
     for (int l = 0; l < static_cast<int>(model.loads().size()); ++l) {
         const Load& load = model.loads()[l];
-        LoadForces F{};
+        LoadForces F(load.n_acted);
         load.forces(load_arguments(load, at, X, V, turns.of(l, angles)), F);
-        for (int b = 0; b < 2; ++b)
+        for (std::size_t b = 0; b < load.n_acted; ++b)
             if (load.bodies[b] != world) rest[static_cast<std::size_t>(load.bodies[b])] += F[b];
     }
 }

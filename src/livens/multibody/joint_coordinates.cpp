@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Angles, displacements and curves as coordinates of joints, and rows that are functions of them: screws,
-// gears, racks, slots. theory.md, "Coordinates of joints", has the derivatives and how turns are counted.
+// Angles, displacements and curves as coordinates of joints, and the rows of slots. theory.md, "Coordinates
+// of joints", has the derivatives.
 #include "livens/multibody/joint_coordinates.h"
 
 #include <cmath>
@@ -53,70 +53,6 @@ double rate_of(const PairForm& form, std::span<const Matrix34> X, std::span<cons
     for (int side = 0; side < gradient.bodies.size; ++side)
         rate += dot(gradient.by[side], V[gradient.bodies.bodies[side]]);
     return rate;
-}
-
-// --- couplings
-
-/// The largest number of which the factors of all angles are whole multiples, by Euclid's algorithm; 0: none
-/// of at most 10,000 parts.
-double common_measure(const std::vector<CoupledCoordinate>& terms)
-{
-    constexpr double rounding = 1e-11;   // of the largest factor: what decimals of a ratio leave
-    double measure = 0, largest = 0;
-    for (const auto& [factor, coordinate] : terms) {
-        if (!coordinate.is_angle()) continue;
-        double rest = std::abs(factor);
-        largest = std::max(largest, rest);
-        // Remainders of Euclid's algorithm: what is left below rounding counts as zero.
-        while (rest > rounding * largest)
-            measure = std::exchange(rest, std::abs(std::remainder(measure, rest)));
-    }
-    return measure * 10000.5 >= largest ? measure : 0;   // by half a part for rounding
-}
-
-Value angle_at(double factor, double c, double s)
-{
-    const double square = c * c + s * s, quartic = square * square;
-    Value angle;
-    angle.value = factor * arc_tangent(s, c);
-    // Of atan2(s, c) off the unit circle as well: between the nodes of an element s^2 + c^2 is not one.
-    angle.gradient[0] = factor * (-s / square);
-    angle.gradient[1] = factor * (c / square);
-    angle.hessian[0][0] = factor * (2 * c * s / quartic);
-    angle.hessian[0][1] = angle.hessian[1][0] = factor * ((s * s - c * c) / quartic);
-    angle.hessian[1][1] = factor * (-2 * c * s / quartic);
-    return angle;
-}
-
-/// Angles take the shorter way round.
-SmoothFunction multiple_of_angle(double factor)
-{
-    return {[factor](const Point& q) { return angle_at(factor, q[0], q[1]); },
-            [factor](const Point& q, std::span<const Point> steps, std::span<Value> out) {
-                for (std::size_t i = 0; i < steps.size(); ++i) {
-                    const double c = q[0] + steps[i][0], s = q[1] + steps[i][1];
-                    out[i] = angle_at(factor, c, s);
-                    // The angle between two directions by their cross and inner product: no difference of two
-                    // angles, so no cut and no cancellation.
-                    out[i].value =
-                        factor * arc_tangent(q[0] * steps[i][1] - q[1] * steps[i][0], q[0] * c + q[1] * s);
-                }
-            },
-            2};
-}
-
-SmoothFunction multiple(double factor)
-{
-    const auto at = [factor](double q) {
-        Value value;
-        value.value = factor * q;
-        value.gradient[0] = factor;
-        return value;
-    };
-    return {[at](const Point& q) { return at(q[0]); },
-            [at](const Point&, std::span<const Point> steps, std::span<Value> out) {
-                for (std::size_t i = 0; i < steps.size(); ++i) out[i] = at(steps[i][0]);
-            }};
 }
 
 // --- curves
@@ -262,35 +198,6 @@ double turned_to(double angle, double near)
 {
     constexpr double turn = 2 * std::numbers::pi;
     return angle + turn * std::round((near - angle) / turn);
-}
-
-ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& terms, double constant, double scale,
-                           const std::string& label)
-{
-    std::vector<PairForm> forms;
-    std::vector<SmoothFunction> functions;
-    bool has_angles = false;
-    for (const auto& [factor, coordinate] : terms) {
-        if (!std::isfinite(factor) || factor == 0)
-            refuse("joint-row", "the factor of a coordinate must be finite and not zero", to_text(factor), "",
-                   "", "");
-        forms.insert(forms.end(), coordinate.forms.begin(), coordinate.forms.end());
-        functions.push_back(coordinate.is_angle() ? multiple_of_angle(factor) : multiple(factor));
-        has_angles = has_angles || coordinate.is_angle();
-    }
-    if (forms.empty()) refuse("joint-row", "a row couples at least one coordinate", "", "", "", "");
-    // After a whole turn of every angle the bodies stand as before; all the multiples of this period are one
-    // position. It exists only for ratios of whole numbers: each angle is known up to whole turns.
-    const double measure = common_measure(terms);
-    if (has_angles && measure == 0)
-        refuse("gear-ratio", "the angles of a coupling turn in no ratio of whole numbers up to 10000", "", "",
-               "after one turn of one wheel the other would stand where no tooth is, so positions do not "
-               "tell whether the constraint holds",
-               "give the ratio of two numbers of teeth");
-    ConstraintRow row = row_of(std::move(forms), std::move(functions), scale, label);
-    row.period = 2 * std::numbers::pi * measure;
-    row.c = -constant;
-    return row;
 }
 
 std::vector<ConstraintRow> curve_rows(const Curve& curve, int body_i, int body_j, const Vector4& b,

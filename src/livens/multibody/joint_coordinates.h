@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -64,6 +65,24 @@ struct CoupledCoordinate {
     JointCoordinate coordinate;
 };
 
+/// A smooth law of one coordinate q: a function with two continuous derivatives by it.
+struct CoordinateLaw {
+    TimeFunction at;   ///< of q, as functions of time are of t
+    /// Where it is known, and a motion ends; of a law with a period, one round.
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    double period = 0;   ///< after which it begins again, `rise` higher; 0: it does not
+    double rise = 0;
+    std::vector<double> knots{};   ///< where its third derivative jumps, ascending; of one round
+};
+/// A law and what it is of.
+struct CoupledLaw {
+    CoordinateLaw law;
+    JointCoordinate coordinate;
+    double shift = 0;   ///< what the law's q is more than the forms say
+    std::string what;   ///< FunctionEdge::what
+};
+
 /// sum_k factor_k coordinate_k = constant, up to whole turns: a screw (displacement and -pitch / (2 pi) times
 /// angle), a gear pair (two angles), a rack (displacement and angle), a differential (three angles).
 ///
@@ -71,10 +90,13 @@ struct CoupledCoordinate {
 /// n_k of one number u, as teeth are, it need not: the row is known up to multiples of 2 pi u, of which the
 /// value takes the nearest, and the solver follows it through time without a jump.
 ///
+/// With a law, sum_k factor_k coordinate_k - law(q) = constant. Of an angle the law knows all turns if it has
+/// a period, of which a turn is a whole multiple; else those next to the middle between low and high.
+///
 /// Throws InputError: `gear-ratio` for factors without a common measure of at most 10,000 parts; `joint-row`
 /// for no coordinate, a factor that is zero or not finite.
 ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& terms, double constant, double scale,
-                           const std::string& label);
+                           const std::string& label, const CoupledLaw* law = nullptr);
 
 /// A curve at a parameter: place, its two derivatives, and two unit normals that do not turn about the
 /// tangent as they go along (each n' is parallel to the tangent; for a plane curve, the normal in the plane

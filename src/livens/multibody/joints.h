@@ -10,6 +10,7 @@
 #include "livens/base/linear.h"
 #include "livens/multibody/constraint.h"
 #include "livens/multibody/joint_coordinates.h"
+#include "livens/multibody/rope.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -38,6 +39,8 @@ struct Joint {
     double until = std::numeric_limits<double>::infinity();
     /// Of a slot: points of its whole curve in coordinates of `first`, in order, to be drawn.
     std::vector<Vector3> path{};
+    /// Of a rope: the points that it runs over.
+    std::vector<BodyPoint> over{};
 
     bool acts_at(double t) const { return from <= t && t < until; }
 };
@@ -107,6 +110,12 @@ Joint constant_angle(const std::string& name, int first, int second, const Joint
                      double scale = 1);
 /// A massless rod of the given length between the two points. 1 row. Throws InputError if length <= 0.
 Joint rod(const std::string& name, int first, int second, const JointFrame& frame, double length);
+/// A rope over two or more points, in this order, along which it runs freely: without mass and stretch, and
+/// always taut. The sum of its spans is `length`. 1 row; the reaction is that on the last of its bodies, at
+/// its last point there. X: of all bodies as they stand. Throws InputError `rod-length`, and what
+/// check_rope() throws.
+Joint rod(const std::string& name, const std::vector<BodyPoint>& over, double length,
+          const Configurations& X);
 
 /// A point of the second body slides along a curve in coordinates of the first. 2 rows. Throws InputError as
 /// curve_rows() does.
@@ -139,5 +148,11 @@ struct CoupledJoint {
 /// `coupling-terms` for less than two coordinates, one of them twice, and more than RowBodies::most bodies.
 Joint coupling(const std::string& name, const std::vector<CoupledJoint>& terms, const Configurations& X,
                double length = 1);
+/// sum_k factor_k coordinate_k = law(coordinate of `of`), whose factor does not count: cams, levers, what no
+/// sum says. One term is enough. Coordinates are what their joints call them, so that the start need not
+/// fulfil it. Also throws InputError `coupling-terms` for a coordinate on both sides, `coupling-law` for a
+/// law that positions do not tell, and `coupling-range` for a start outside of it.
+Joint coupling(const std::string& name, const std::vector<CoupledJoint>& terms, const CoupledJoint& of,
+               const CoordinateLaw& law, const Configurations& X, double length = 1);
 
 }   // namespace gnu::visibility("default")]]livens

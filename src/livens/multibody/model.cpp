@@ -273,7 +273,8 @@ int Model::add_load(Load load)
 {
     check_name(loads_, load.name, "load");
     const std::string path = "load[" + load.name + "]";
-    if (load.bodies.size() < 2) refuse("load-empty", path, "a load acts on one body or between two");
+    if (load.n_acted < 2 || load.n_acted > load.bodies.size() || load.needs_directors.size() != load.n_acted)
+        refuse("load-empty", path, "a load acts on one body or between two");
     for (const int body : load.bodies) check_body_index(body, n_bodies(), path);
     if (load.bodies[0] == load.bodies[1])
         refuse("load-self", path,
@@ -284,7 +285,7 @@ int Model::add_load(Load load)
         refuse("load-without-tangent", path,
                "a load that depends on position or velocity needs its derivative");
     for (const double t : load.breaks) require_finite(Matrix<1, 1>{t}, path, "an instant");
-    for (int b = 0; b < 2; ++b)
+    for (std::size_t b = 0; b < load.n_acted; ++b)
         if (load.needs_directors[b] && load.bodies[b] != world && bodies_[load.bodies[b]].is_point)
             refuse("load-needs-directors", path,
                    "the load needs the orientation of '" + bodies_[load.bodies[b]].name + "', a point mass",

@@ -37,6 +37,13 @@ double length_of(const Model& model)
     }
     for (const Body& body : bodies)
         length = std::max(length, 2 * told_distance(center_of_mass(body), middle));
+    const auto of_rope = [&](const std::vector<BodyPoint>& over) {
+        const auto place = [&](const BodyPoint& at) {
+            return (at.body == world ? world_configuration : bodies[at.body].X) * point(at.point);
+        };
+        for (std::size_t k = 1; k < over.size(); ++k)
+            length = std::max(length, told_distance(place(over[k - 1]), place(over[k])));
+    };
     for (const Joint& joint : model.joints()) {
         const Body& second = bodies[joint.second];
         const Vector3 place = second.X * point(joint.point_second);
@@ -46,7 +53,9 @@ double length_of(const Model& model)
             std::max({length, told_distance(place, center_of_mass(second)), told_distance(place, other)});
         if (joint.first != world)
             length = std::max(length, told_distance(other, center_of_mass(bodies[joint.first])));
+        of_rope(joint.over);
     }
+    for (const Load& load : model.loads()) of_rope(load.over);
     if (length > 0) return std::max(length, radius);
     for (const Load& load : model.loads()) {   // what attracts tells an orbit, but not a mechanism in one
         if (!load.sets_length_scale) continue;

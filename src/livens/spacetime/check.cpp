@@ -51,7 +51,8 @@ void refuse_free_bodies(const Model& model)
     }
     for (const Load& load : model.loads())
         // A spring holds a body like a joint; a force without a potential may follow it anywhere.
-        if (load.depends_on_X && load.potential) tie(load.bodies[0], load.bodies[1]);
+        for (std::size_t b = 1; load.depends_on_X && load.potential && b < load.n_acted; ++b)
+            tie(load.bodies[0], load.bodies[b]);
     for (int b = 0; b < model.n_bodies(); ++b)
         if (!is_held[group[b]])
             throw InputError(
@@ -62,7 +63,8 @@ void refuse_free_bodies(const Model& model)
                  "give positions at the start or at the end"});
 }
 
-/// The other families take quadratic forms alone.
+/// The other families follow no drives, and elements of the paper no turns, which are counted from node to
+/// node.
 void refuse_special_rows(const Model& model, const Method& method)
 {
     if (is_nodal(method)) return;
@@ -70,13 +72,13 @@ void refuse_special_rows(const Model& model, const Method& method)
     if (model.has_drives())
         throw InputError({"drives-method", "method.family", "the method " + name + " cannot follow drives",
                           name, "lobatto or radau", "", "use lobatto for joints that depend on time"});
-    for (int r = 0; r < model.n_rows(); ++r)
-        if (!model.row(r).functions.empty())
+    for (int r = 0; r < model.n_rows() && std::holds_alternative<Mixed>(method); ++r)
+        if (model.row(r).period > 0)
             throw InputError({"joint-method", "method.family",
                               "the method " + name + " cannot hold " + model.row_name(r), name,
-                              "lobatto or radau",
-                              "its rows must be quadratic forms of the bodies' positions and directors",
-                              "use lobatto for screws, couplings, gears and slots"});
+                              "lobatto, radau, midpoint or endpoint",
+                              "its row counts turns of angles, from node to node",
+                              "use lobatto for screws, gears and couplings of angles"});
 }
 
 /// Where forces follow the motion, vibrations and laws that bend make errors that add up from element to

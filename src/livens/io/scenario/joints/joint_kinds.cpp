@@ -263,10 +263,13 @@ std::vector<JointKind> kinds_of_curves_and_distances()
          Location::on_curve,
          make_slot},
         {{"rod",
-          "constant distance between two points (1 constraint)",
-          {points,
+          "constant distance between two points, or a rope over several points: the sum of its spans is "
+          "constant "
+          "(1 constraint)",
+          {points, over_key(),
            Key{"length", types::number,
-               "Length of the rod. Default: the distance of its points where `[[body]]` places the bodies.",
+               "Length of the rod: the distance of its points, or of a rope the sum of its spans. Default: "
+               "what it is where `[[body]]` places the bodies.",
                "m"}
                .within(positive)}},
          Location::at_points,
@@ -300,15 +303,16 @@ std::vector<JointKind> kinds_of_coordinates()
                                     p.section.number("radius"), p.X, p.scale);
          }},
         {{"coupling",
-          "a weighted sum of coordinates of any joints is constant (1 constraint)",
-          {Key{
-              "terms", types::factors,
-              "The factor of each coordinate in the sum, under its name in quotes, as in `{ \"left.angle\" = "
-              "1, \"slide.displacement\" = \"-2 1/m\" }`. Angles are in rad, displacements in m; where "
-              "factors have units, all terms must have one."}
-               .needed()}},
+          "a weighted sum of coordinates of any joints is constant, or a function of one more (1 constraint)",
+          {Key{"terms", types::factors,
+               "The factor of each coordinate in the sum, under its name in quotes, as in `{ \"left.angle\" "
+               "= "
+               "1, \"slide.displacement\" = \"-2 1/m\" }`. Angles are in rad, displacements in m; where "
+               "factors have units, all terms must have one."}
+               .needed(),
+           law_key()}},
          Location::of_joints,
-         [](const JointParts& p) { return coupling(p.name, p.coupled, p.X, p.scale); }}};
+         make_coupling}};
 }
 
 }   // namespace
@@ -323,6 +327,20 @@ const std::vector<JointKind>& joint_kinds()
         return kinds;
     }();
     return all;
+}
+
+Key over_key()
+{
+    return Key{
+        "over", types::tables,
+        "A rope instead of a line between two points: the points over which it runs freely, two or more, "
+        "in this order, on any bodies or the world. It replaces `between` and `points`."}
+        .holding(
+            {"point of a rope",
+             "A place that the rope ends at or runs over, without friction or size, as an eye or a small "
+             "pulley.",
+             {Key{"body", types::text, body_or_world_or_point}.needed_without("point"),
+              Key{"point", types::point, "Its place, in coordinates of that body.", "m", "[0, 0, 0]"}}});
 }
 
 Key frames_key(const std::string& heading, const std::string& doc)

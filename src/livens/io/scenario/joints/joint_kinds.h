@@ -33,6 +33,7 @@ struct JointParts {
     const Matrix34 &X_first, &X_second;   ///< at the start
     double scale;
     std::vector<CoupledJoint> coupled = {};   ///< of a coupling: by `joints` two, else the terms
+    CoupledJoint leader = {};                 ///< of a coupling by a law; null: there is none
     std::vector<Matrix34> X = {};             ///< of all bodies, for a coupling
     /// From coordinates of the bodies as stated to their axes.
     Matrix3 stretch_first = identity<3>(), stretch_second = identity<3>();
@@ -54,5 +55,10 @@ struct JointKind : Kind {
 };
 
 const std::vector<JointKind>& joint_kinds();
+
+/// `law` of a coupling.
+Key law_key();
+/// By terms, and by a law where there is one.
+Joint make_coupling(const JointParts& p);
 
 }   // namespace livens::inline io_internal

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [[joint]]: where it sits, and what may be wrong with that.
 // Placed in the world (`at`), on the bodies (`points`) or by `frames`; see docs/joints.md.
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "livens/base/text.h"
 #include "livens/io/scenario/bodies/bodies.h"
@@ -207,7 +209,8 @@ Joint make_joint(Builder& builder, const Section& joint, const std::string& name
 std::string claim_joint_name(const Section& joint, std::unordered_set<std::string>& taken)
 {
     const bool has_ends =
-        joint.find("between") != nullptr || joint.find("joints") != nullptr || joint.find("terms") != nullptr;
+        std::ranges::any_of(std::initializer_list<std::string_view>{"between", "joints", "terms", "over"},
+                            [&](std::string_view key) { return joint.find(key) != nullptr; });
     if (!joint.has("name") && (!has_ends || joint.kind() == any_kind)) return {};
     const std::string name = joint.has("name") ? joint.text("name") : default_name(joint);
     const Advice advice = joint.has("name") ? Advice{"results refer to joints by name", "rename one of them"}
@@ -289,8 +292,8 @@ Table joint_table()
         if (joint_kinds()[i].location == Location::of_joints)
             keys[0].required = true;   // `joints`, or `terms`
         else
-            keys.insert(keys.begin(),
-                        Key{"between", types::names, two_bodies_or_points}.needed_without("points"));
+            keys.insert(keys.begin(), Key{"between", types::names, two_bodies_or_points}.needed_without(
+                                          std::string_view(all[i].word) == "rod" ? "points over" : "points"));
     }
     return Table{
         "[[joint]]",
@@ -336,6 +339,10 @@ void read_joints(Builder& builder)
             builder.remember(path, section);
             if (is_coupling) {
                 if (findings.n_errors() == before) read_coupling(builder, section, name, path);
+                continue;
+            }
+            if (section.has("over")) {
+                if (findings.n_errors() == before) read_rope(builder, section, name, path);
                 continue;
             }
             BodyReference first, second;

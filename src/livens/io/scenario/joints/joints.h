@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "livens/io/scenario/builder.h"
 
@@ -26,6 +28,11 @@ struct JointReference {
 /// Throws InputError (`joint-unknown`, `joint-coordinate`) at path.joint.
 JointReference find_coordinate(const Builder& builder, const Section& section, const std::string& path);
 
+/// `over`: the points of a rope.
+Key over_key();
+/// What `over` of a section says, in axes of the bodies; none where something is wrong, which is told.
+std::optional<std::vector<BodyPoint>> read_over(Builder& builder, const Section& section);
+
 /// `frames`: one for each of two bodies.
 Key frames_key(const std::string& heading, const std::string& doc);
 bool check_frames(const Section& section);
@@ -36,6 +43,9 @@ void warn_of_world_points(Builder& builder, const Section& section, const std::a
 /// A joint between coordinates of others, which are in the model already.
 void read_coupling(Builder& builder, const Section& section, const std::string& name,
                    const std::string& path);
+
+/// A rod over several points.
+void read_rope(Builder& builder, const Section& section, const std::string& name, const std::string& path);
 
 // Each reports all it finds.
 void read_joints(Builder& builder);
