@@ -168,6 +168,13 @@ class Specs {
       ["torques", "torque", "Torques of joints", "N m"],
     ])
       this.add(id, "All joints", title, unit, this.sizes("reaction", what, kept));
+    this.add(
+      "tensions",
+      "All joints",
+      "Tensions of ropes",
+      "N",
+      many(meta.joints.flatMap((j, i) => this.of("drive", i, "tension", j.name))),
+    );
     for (const [id, what, title, unit] of [
       ["loads", "force", "Forces of loads", "N"],
       ["load torques", "torque", "Torques of loads", "N m"],

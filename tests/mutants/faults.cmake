@@ -1392,7 +1392,7 @@ livens_mutant(NAME state_dead_centre
 
 # The slope of a coupled displacement without its factor: right where the factor is one, as in racks and screws.
 livens_mutant(NAME coupled_slide_slope
-              FILE multibody/joint_coordinates.cpp
+              FILE multibody/coupling_rows.cpp
               OLD [[value.gradient[0] = factor;]]
               NEW [[value.gradient[0] = factor / std::abs(factor);]]
               TESTS_OF properties
@@ -1414,6 +1414,38 @@ livens_mutant(NAME coupling_lost_in_projection
               NEW [[std::round(0 * (followed - values[r]) / row.period)]]
               TESTS_OF reference
               MUST_FAIL Couplings.AProjectedStartKeepsWhatTheStatedOneHad)
+
+# A span that is drawn through a point grows again behind it.
+livens_mutant(NAME rope_through_a_point
+              FILE multibody/joints/rod.cpp
+              OLD [[constexpr double closest = 0.01;]]
+              NEW [[constexpr double closest = -1;]]
+              TESTS_OF properties
+              MUST_FAIL CoupledJoints.ASpanDoesNotPassThroughAPoint)
+
+# An elastic rope pulls the ends of its first span alone: right for two points.
+livens_mutant(NAME rope_of_one_span
+              FILE multibody/loads/rope_spring.cpp
+              OLD [[tape.pull(spans[k].b.side, spans[k].b.p, -s, r[k]);]]
+              NEW [[tape.pull(spans[0].b.side, spans[0].b.p, -s, r[0]);]]
+              TESTS_OF reference
+              MUST_FAIL Ropes.RandomOnesMoveAsParticlesDo)
+
+# A law rises with each turn, but not in the count of positions that are one.
+livens_mutant(NAME law_without_its_rise
+              FILE multibody/coupling_rows.cpp
+              OLD [[value.value += rounds * law.rise;]]
+              NEW [[value.value += 0 * rounds * law.rise;]]
+              TESTS_OF reference
+              MUST_FAIL Cams.ALawOfAnAngleMayRiseWithEachTurn)
+
+# The second derivative of a law without that of the angle: the motion is right, and takes longer; accelerations are not.
+livens_mutant(NAME law_without_bend
+              FILE multibody/coupling_rows.cpp
+              OLD [[-f.second * angle.gradient[k] * angle.gradient[l] - f.first * angle.hessian[k][l];]]
+              NEW [[-f.second * angle.gradient[k] * angle.gradient[l];]]
+              TESTS_OF properties
+              MUST_FAIL CoupledJoints.ARopeAndACamPassTheKit)
 
 # Growth of entries from merger to merger is not watched: right wherever exchanges do.
 livens_mutant(NAME chain_without_reflections

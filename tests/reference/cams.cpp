@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "livens/base/text.h"
+#include "reference/shipped.h"
 #include "reference/solved.h"
 
 namespace livens::tests {
@@ -245,6 +246,22 @@ TEST(Cams, OneCoordinateIsNotOnBothSides)
         const ScenarioResult read = parse_scenario("format = 1\n" + text + "[time]\nend = 1\n", "test.toml");
         ASSERT_EQ(read.diagnostics.size(), 1u) << of;
         EXPECT_EQ(read.diagnostics[0].code, code) << read.diagnostics[0].message;
+    }
+}
+
+/// Lift and force are those of an eccentric disc that is driven by 60 t^2.
+TEST(Cams, TheExampleOfATappet)
+{
+    const Shipped cam = solve_example("cam");
+    constexpr double e = 0.01, m = 0.5, k = 2000;
+    const Motion& motion = cam.solution.motion;
+    for (const double t : {0.2, 0.5, 0.77, 0.971, 0.995}) {
+        const double q = 60 * t * t, w = 120 * t;
+        EXPECT_NEAR(sample_state(motion, t).X[1](2, 0), 0.05 + e * (1 - std::cos(q)), 1e-9) << t;
+        const double force =
+            m * (9.81 + e * (std::cos(q) * w * w + std::sin(q) * 120)) + k * e * (2 - std::cos(q));
+        EXPECT_NEAR(sample_joints(cam.model, motion, t)[2].right.force[2], force, 1e-6) << t;
+        EXPECT_EQ(force<0, t> 0.99) << "where the tappet would leave the disc";
     }
 }
 

@@ -10,6 +10,7 @@
 #include "livens/base/text.h"
 #include "livens/diagnostics/quantities.h"
 #include "livens/statics/equilibrium.h"
+#include "reference/shipped.h"
 #include "reference/solved.h"
 
 namespace livens::tests {
@@ -115,6 +116,18 @@ TEST(Ropes, TacklesOfTwoAndFourStrands)
     }
 }
 
+TEST(Ropes, TheExampleOfATackle)
+{
+    const Shipped shipped = solve_example("tackle");
+    const double a = (4 * 30 - 100) * g / (100 + 16 * 30), t = 1.5;
+    const State last = shipped.at(t);
+    EXPECT_NEAR(last.X[0](2, 0), 0.6 + a * t * t / 2, 1e-12);
+    EXPECT_NEAR(last.X[1](2, 0), 2 - 4 * a * t * t / 2, 1e-12);
+    const Reaction reaction = sample_joints(shipped.model, shipped.solution.motion, 1)[0].right;
+    EXPECT_NEAR(rope_tension(shipped.model.joints()[0], sample_state(shipped.solution.motion, 1).X, reaction),
+                30 * (g - 4 * a), 1e-10);
+}
+
 TEST(Ropes, ATackleInBalanceIsFoundAtRest)
 {
     const ScenarioResult read =
@@ -208,12 +221,14 @@ struct Particles {
         for (int i = 0; i < n; ++i) moved.step(t / n);
         return moved;
     }
-    std::string scenario() const
+    /// `ends`: where they are at the end of time, if that is stated.
+    std::string scenario(const std::vector<Vector3>& ends = {}) const
     {
         std::string text;
         for (std::size_t i = 0; i < masses.size(); ++i) {
             const std::string name = "m" + std::to_string(i);
             text += body(name, masses[i], places[i], "velocity = " + list(speeds[i]) + "\n");
+            if (!ends.empty()) text += "[body.end]\nposition = " + list(ends[i]) + "\n";
             text += "[[load]]\ntype = \"force\"\nbody = \"" + name + "\"\nvalue = " + list(forces[i]) + "\n";
         }
         std::vector<std::string> points;
@@ -293,6 +308,32 @@ TEST(Ropes, SteppingAndShortElementsAgree)
                                         {"family = \"lobatto\"\ndegree = 2\n", 4.0}}) {
         const double coarse = error(method, 20), fine = error(method, 40);
         EXPECT_NEAR(std::log2(coarse / fine), order, 0.2) << method;
+    }
+}
+
+/// Positions at both ends, all elements at once: momenta at the start are found, which are none.
+TEST(Ropes, PositionsMayBeGivenAtBothEnds)
+{
+    constexpr double end = 0.5;
+    const Particles other = swinging().after(end);
+    for (const auto& [method, bound] : {std::pair{"family = \"lobatto\"\ndegree = 5\n", 1e-9},
+                                        {"family = \"mixed\"\ndegree = 3\n", 1e-5}}) {
+        const ScenarioResult read = parse_scenario(
+            "format = 1\n" + swinging().scenario(other.places) +
+                "[time]\nend = 0.5\nelements = 10\n[start]\ngiven = \"positions\"\n[end]\ngiven "
+                "= \"positions\"\n[method]\n" +
+                method,
+            "test.toml");
+        ASSERT_TRUE(read.scenario) << method;
+        const Scenario& s = *read.scenario;
+        const Solution solution = solve(s.model, {s.conditions}, s.time, s.method, s.options);
+        EXPECT_TRUE(solution.report.converged()) << method << solution.report.message;
+        const State first = solution.motion.at_end(0), middle = solution.motion.at_end(5);
+        const Particles half = swinging().after(end / 2);
+        for (std::size_t b = 0; b < 2; ++b) {
+            EXPECT_LT(norm(first.V[b].column(0)), 10 * bound) << method;
+            EXPECT_LT(norm(middle.X[b].column(0) - half.places[b]), bound) << method;
+        }
     }
 }
 

@@ -200,18 +200,26 @@ std::string coupled(const std::string& terms)
 
 std::vector<test::Case> cases_of_couplings()
 {
-    return {{"coupling-terms", coupled("{}"), "{}"},
-            {"coupling-terms", coupled("{ \"j.angle\" = 1 }"), "{ \"j"},
-            {"joint-factor", coupled("{ \"j.angle\" = 1, \"l.angle\" = 0 }"), "{ \"j"},
-            {"joint-coordinate", coupled("{ \"j.angle\" = 1, \"l.displacement\" = 1 }"), "{ \"j"},
-            {"joint-coordinate", coupled("{ \"j.angle\" = 1, l = 1 }"), "l = 1"},
-            {"joint-unknown", coupled("{ \"j.angle\" = 1, \"jj.angle\" = 1 }"), "\"jj"},
-            {"joint-unknown", coupled("{ \"j.angle\" = 1, \"k.angle\" = 1 }"), "\"k.a"},
-            {"gear-ratio", coupled("{ \"j.angle\" = 1, \"l.angle\" = 3.14159265358979 }"), "\"k\""},
-            {"unit", coupled("{ \"j.angle\" = \"5 cm\", \"l.angle\" = \"2 s\" }"), "\"2 s\""},
-            {"not-finite", coupled("{ \"j.angle\" = inf, \"l.angle\" = 1 }"), "inf"},
-            {"wrong-type", coupled("{ \"j.angle\" = true, \"l.angle\" = 1 }"), "true"},
-            {"missing-key", other("type = \"coupling\""), "[[joint]]\nname = \"k\""}};
+    return {
+        {"coupling-terms", coupled("{}"), "{}"},
+        {"coupling-terms", coupled("{ \"j.angle\" = 1 }"), "{ \"j"},
+        {"joint-factor", coupled("{ \"j.angle\" = 1, \"l.angle\" = 0 }"), "{ \"j"},
+        {"joint-coordinate", coupled("{ \"j.angle\" = 1, \"l.displacement\" = 1 }"), "{ \"j"},
+        {"joint-coordinate", coupled("{ \"j.angle\" = 1, l = 1 }"), "l = 1"},
+        {"joint-unknown", coupled("{ \"j.angle\" = 1, \"jj.angle\" = 1 }"), "\"jj"},
+        {"joint-unknown", coupled("{ \"j.angle\" = 1, \"k.angle\" = 1 }"), "\"k.a"},
+        {"gear-ratio", coupled("{ \"j.angle\" = 1, \"l.angle\" = 3.14159265358979 }"), "\"k\""},
+        {"unit", coupled("{ \"j.angle\" = \"5 cm\", \"l.angle\" = \"2 s\" }"), "\"2 s\""},
+        {"not-finite", coupled("{ \"j.angle\" = inf, \"l.angle\" = 1 }"), "inf"},
+        {"wrong-type", coupled("{ \"j.angle\" = true, \"l.angle\" = 1 }"), "true"},
+        {"missing-key", other("type = \"coupling\""), "[[joint]]\nname = \"k\""},
+        {"coupling-law",
+         coupled("{ \"l.angle\" = 1 }\nlaw = { of = \"j.angle\", expression = \"abs(angle)\" }"), "{ of"},
+        {"coupling-range",
+         coupled("{ \"l.angle\" = 1 }\nlaw = { of = \"j.angle\", coordinates = [1, 2], values = [0, 1] }"),
+         "{ of"},
+        {"rope-points", other("type = \"rod\"\nover = [{ body = \"b\" }]"), "[{ body"},
+        {"rope-span", other("type = \"rod\"\nover = [{ body = \"world\" }, { body = \"b\" }]"), "[{ body"}};
 }
 
 TEST(MechanismScenario, CouplingsTellWhatWasMeant)
