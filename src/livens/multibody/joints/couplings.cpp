@@ -35,7 +35,8 @@ const NamedCoordinate& coordinate_of(const std::string& path, const CoupledJoint
     refuse_terms("joint-coordinate", path,
                  "joint '" + joint.name + "' (" + joint.type + ") has no " + term.coordinate, "",
                  has.empty() ? "it has no coordinate" : "it has: " + has,
-                 "revolute, cylindrical, screw, planar and parallel_axes joints have an angle; prismatic, "
+                 "revolute, cylindrical, screw, planar and parallel_axes joints have an angle; universal "
+                 "joints angle_1 and angle_2, spherical ones with 'angles' angle_3 as well; prismatic, "
                  "cylindrical, screw and point_on_line joints a displacement");
 }
 
