@@ -84,8 +84,7 @@ def test_angles_of_a_cross_are_those_of_its_rotation_over_turns() -> None:
 
 
 def test_springs_of_a_cross_against_reduced_equations() -> None:
-    along = {"angle_1": {"stiffness": 8, "rest": "20 deg", "damping": 0.3}, "angle_2": {"stiffness": 5, "damping": 0.2}}
-    m = cross((2, 3, 0), **along)
+    m = cross((2, 3, 0), angle_1={"stiffness": 8, "rest": "20 deg", "damping": 0.3}, angle_2={"stiffness": 5, "damping": 0.2})
 
     def slope(t: float, y: Any) -> Any:
         q, v = y[:2], y[2:]
@@ -196,8 +195,8 @@ def test_what_a_ball_reads_is_what_scipy_says() -> None:
     assert np.abs(np.linalg.norm(vector, axis=1) - s.rotation_angle).max() < 1e-8
     spline = pytest.importorskip("scipy.interpolate").CubicSpline(sol.t, s.rotation_vector_x)
     assert np.abs(spline(sol.t, 1) - s.rotation_vector_x_rate)[2:-2].max() < 1e-2
-    frame = sol.to_dataframe("ball") if pytest.importorskip("pandas") else None
-    assert any("angle_3" in str(column) for column in frame.columns)
+    pytest.importorskip("pandas")
+    assert any("angle_3" in str(column) for column in sol.to_dataframe("ball").columns)
     assert sol.peak("ball.angle_2").value == pytest.approx(float(sol["ball"].angle_2[np.abs(sol["ball"].angle_2).argmax()]), abs=0.05)
 
 
@@ -222,8 +221,9 @@ def test_springs_along_angles_of_a_ball_against_the_integral_by_hand() -> None:
 def test_three_drives_of_a_ball() -> None:
     m = ball(angles="zyx", gravity=True)
     laws = ("0.5*sin(2*t)", "1.2*sin(t)", "3*t^2")
-    for k, law in enumerate(laws, 1):
-        m.add_joint_drive(f"d{k}", "ball", coordinate=f"angle_{k}", expression=law)
+    m.add_joint_drive("d1", "ball", coordinate="angle_1", expression=laws[0])
+    m.add_joint_drive("d2", "ball", coordinate="angle_2", expression=laws[1])
+    m.add_joint_drive("d3", "ball", coordinate="angle_3", expression=laws[2])
     m.start.initial = "project"
     sol = lv.solve(m, 2, accuracy=1e-10)
     t = sol.t
@@ -306,13 +306,15 @@ def test_round_trip_and_mistakes() -> None:
     m.add_body("c", lv.box(1, 1, 1, mass=1))
     m.add_universal("u", "b", "c", at=(1, 0, 0), axes=[(0, 1, 0), (0, 0, 1)], angle_1={"stiffness": 3})
     assert lv.load(text=m.to_toml()) == m
-    for wrong, code in ((lambda m: m.add_joint_drive("d", "ball", value=0), "joint-coordinate"),
-                        (lambda m: m.add_joint_drive("d", "ball", coordinate="angle", value=0), "joint-coordinate"),
-                        (lambda m: m.add_joint_drive("d", "ball", coordinate="angle_2", value="90 deg"), "drive-angle"),
-                        (lambda m: m.add_spherical("o", "world", "c", at=(0, 0, 0), angle_1={"damping": 1}), "joint-loads"),
-                        (lambda m: m.add_spherical("o", "world", "c", at=(0, 0, 0), limit_stiffness=3), "joint-loads"),
-                        (lambda m: m.add_spherical("o", "world", "c", at=(0, 0, 0), limit="175 deg"), "joint-limits"),
-                        (lambda m: m.add_spherical("o", "world", "c", at=(0, 0, 0), angles="zxz"), "unknown-choice")):
+    wrongs: list[tuple[str, Any]] = [
+        ("joint-coordinate", lambda m: m.add_joint_drive("d", "ball", value=0)),
+        ("joint-coordinate", lambda m: m.add_joint_drive("d", "ball", coordinate="angle", value=0)),
+        ("drive-angle", lambda m: m.add_joint_drive("d", "ball", coordinate="angle_2", value="90 deg")),
+        ("joint-loads", lambda m: m.add_spherical("o", "world", "c", at=(0, 0, 0), angle_1={"damping": 1})),
+        ("joint-loads", lambda m: m.add_spherical("o", "world", "c", at=(0, 0, 0), limit_stiffness=3)),
+        ("joint-limits", lambda m: m.add_spherical("o", "world", "c", at=(0, 0, 0), limit="175 deg")),
+        ("unknown-choice", lambda m: m.add_spherical("o", "world", "c", at=(0, 0, 0), angles="zxz"))]
+    for code, wrong in wrongs:
         bad = m.copy()
         with pytest.raises(lv.InputError, match=code):
             wrong(bad)
