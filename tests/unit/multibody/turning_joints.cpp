@@ -72,7 +72,7 @@ TEST(TurningJoints, TheAnglesOfACrossAreThoseThatItWasTurnedBy)
             EXPECT_NEAR(std::remainder(changed(of.joint.coordinates[0], from, to) - one, 2 * pi), 0, 1e-13);
             EXPECT_NEAR(std::remainder(changed(of.joint.coordinates[1], from, to) - two, 2 * pi), 0, 1e-13);
             for (const ConstraintRow& row : of.joint.rows)
-                if (row.label == "axis 1") EXPECT_NEAR(constraint_value(row, to), 0, 1e-14);
+                EXPECT_TRUE(row.label != "axis 1" || std::abs(constraint_value(row, to)) < 1e-14);
         }
 }
 
