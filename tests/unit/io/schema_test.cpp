@@ -86,6 +86,7 @@ const Table& table_of(const std::string& header, const std::string& type)
     if (header == "[joint.curve]") heading = "curve of a slot";
     if (header == "[joint.angle]" || header == "[joint.displacement]")
         heading = header.substr(7, header.size() - 8) + " of a joint";
+    if (header.starts_with("[joint.angle_")) heading = "angle of a joint";
     if (header == "[[joint.frames]]") heading = "frame of a joint";
     if (header == "[[load.frames]]") heading = "frame of a bushing";
     if (header == "[body.shape]") heading = "shape of [[body]]";

@@ -67,7 +67,7 @@ const Key angles{
 Key frames_of_ball()
 {
     return frames_key(
-        "frame of a ball joint",
+        "frame of a joint",
         "Two frames, one on each body and in that body's coordinates, that meet in one point: "
         "`at` and `points` are left out. The rotation of the joint is that from the first frame "
         "to the second, and angles are zero where both coincide. Default: axes of the first "
