@@ -176,7 +176,7 @@ std::vector<test::Case> cases_of_joints()
         {"drive-angle",
          joined("type = \"spherical\"\nat = [0, 0, 0]\nangles = \"xyz\"\n[[drive]]\nname = \"d\"\n" +
                 on_joint + "coordinate = \"angle_2\"\nvalue = 2"),
-         "[[drive]]"},
+         "\"d\""},
         {"joint-bend", joined("type = \"constant_velocity\"\nat = [0, 0, 0]\naxes = [[1, 0, 0], [-1, 0, 0]]"),
          "[[1, 0, 0], [-1"},
         {"joint-coordinate", driven(on_joint + "coordinate = \"displacement\"\nvalue = 0"), "\"j\"\ncoord"},
