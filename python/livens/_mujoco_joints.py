@@ -21,7 +21,8 @@ _LIMITS = lost("joint", "joint limits are not kept", "limits=\"stop\" keeps them
 _LIMITS_AT_START = lost("joint", "limits are not kept at or beyond which a joint begins", "state by at= where the joint begins")
 _LIMITS_ORDER = lost("joint", "limits are not kept whose lower is not below the upper")
 _SOFT_LIMITS = Loss("import-mended", "joint", "joints", "limits are springs here whose stiffness follows from the bodies (solref and solimp are not kept)")
-_BALL_LIMITS = lost("joint", "limits of ball joints are not kept")
+_BALL_LIMITS = lost("joint", "limits of ball joints beyond 170 degrees are not kept")
+_FARTHEST = math.radians(170)   # to which ball joints are limited
 _BALL_ROTOR = lost("joint", "armature of ball and free joints is not kept")
 _FRICTION = lost("joint", "dry friction is not kept", "docs/howto/friction.md has it as an expression")
 _BENT = lost("joint", "springs and dampers that are not linear, or yield, are not kept")
@@ -91,10 +92,10 @@ def _add_along(p: Parts, j: int, table: Table) -> None:
 
 def _add_limits(p: Parts, j: int, table: Table) -> None:
     name = table["name"]
-    if p.m.jnt_type[j] == BALL:
-        return p.losses.add(_BALL_LIMITS, name)
     if not p.stops:
         return p.losses.add(_LIMITS, name)
+    if p.m.jnt_type[j] == BALL:
+        return _add_ball_limit(p, j, table)
     low, high = (float(x) for x in p.m.jnt_range[j])
     if not low < high:
         return p.losses.add(_LIMITS_ORDER, name)
@@ -105,6 +106,49 @@ def _add_limits(p: Parts, j: int, table: Table) -> None:
     if any(math.isfinite(x) for x in kept):
         p.losses.add(_SOFT_LIMITS, name)
         table["limits"] = kept
+
+
+def _add_ball_limit(p: Parts, j: int, table: Table) -> None:
+    """Of the angle of its quaternion."""
+    name, at, most = table["name"], p.m.jnt_qposadr[j], float(p.m.jnt_range[j][1])
+    q = p.d.qpos[at:at + 4]
+    turned = 2 * math.atan2(float(np.linalg.norm(q[1:])), abs(float(q[0])))
+    if not 0 < most <= _FARTHEST:
+        return p.losses.add(_BALL_LIMITS, name)
+    if turned > most - _AT_A_LIMIT:
+        return p.losses.add(_LIMITS_AT_START, name)
+    p.losses.add(_SOFT_LIMITS, name)
+    del table["at"]
+    table["frames"], table["limit"] = frames_of_ball(p, j, np.eye(3)), most
+    return None
+
+
+def frames_of_ball(p: Parts, j: int, rest: Any) -> list[Table]:
+    """One on each body, which coincide where the joint is turned by a matrix."""
+    m, d = p.m, p.d
+    joint = next(t for t in p.root["joint"] if t["name"] == p.joint_names[j])
+    at = m.jnt_qposadr[j]
+    turned = matrix_of(d.qpos[at:at + 4])   # axes of the second frame in those of the first
+    seen = np.array(d.xmat[m.jnt_bodyid[j]].reshape(3, 3))   # of the second frame, in the world
+    return [Table({"point": point_on(p, name, d.xanchor[j]),
+                   "directors": tuple(tuple(float(x) for x in row) for row in (axes_of(p, name).T @ F).T)}, p.place)
+            for name, F in zip(joint["between"], (seen @ turned.T @ rest, seen))]
+
+
+def axes_of(p: Parts, body: str) -> Any:
+    """Of a body as it is placed, or of the world."""
+    if body == WORLD:
+        return np.eye(3)
+    table = next(t for t in p.root["body"] if t["name"] == body)
+    return np.array(table.get("directors", np.eye(3))).T
+
+
+def point_on(p: Parts, body: str, point: Any) -> tuple[float, ...]:
+    """A place in the world in coordinates of a body."""
+    if body == WORLD:
+        return tuple(float(x) for x in point)
+    table = next(t for t in p.root["body"] if t["name"] == body)
+    return tuple(float(x) for x in axes_of(p, body).T @ (np.array(point) - np.array(table["position"])))
 
 
 def _add_rotor(p: Parts, j: int, table: Table, inertia: float) -> None:

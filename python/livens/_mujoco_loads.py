@@ -10,7 +10,7 @@ import numpy as np
 from ._errors import fault
 from ._losses import Loss, lost
 from ._mujoco_fields import BALL, FREE, WORLD, array, is_off, name_of, original
-from ._mujoco_joints import fixed_terms, matrix_of, rope_over
+from ._mujoco_joints import fixed_terms, frames_of_ball, matrix_of, rope_over
 from ._tree import Table
 
 if TYPE_CHECKING:
@@ -54,32 +54,11 @@ def add_loads_of_body(p: Parts, b: int, gravity: Any) -> None:
 
 def _add_ball_spring(p: Parts, j: int) -> None:
     """A torque along the rotation from where it is at rest, as long as the angle."""
-    m, d = p.m, p.d
     joint = next(t for t in p.root["joint"] if t["name"] == p.joint_names[j])
-    first, second = joint["between"]
-    a = m.jnt_qposadr[j]
-    turned = matrix_of(d.qpos[a:a + 4])   # axes of the second frame in those of the first
-    rest = matrix_of(m.qpos_spring[a:a + 4])
-    axes = [np.eye(3) if name == WORLD else _axes_of(p, name) for name in (first, second)]
-    seen = np.array(d.xmat[m.jnt_bodyid[j]].reshape(3, 3))   # of the second frame, in the world
-    frames = [seen @ turned.T @ rest, seen]
-    ends = [Table({"point": _point_of(p, name, d.xanchor[j]), "directors": tuple(tuple(float(x) for x in row) for row in (A.T @ F).T)}, p.place)
-            for name, A, F in zip((first, second), axes, frames)]
-    k = float(m.jnt_stiffness[j])
-    p.add("load", {"name": p.names.of(f"spring of {joint['name']}", "load"), "type": "bushing", "between": (first, second), "frames": ends,
-                   "stiffness": (0.0, 0.0, 0.0, k, k, k)})
-
-
-def _axes_of(p: Parts, body: str) -> Any:
-    table = next(t for t in p.root["body"] if t["name"] == body)
-    return np.array(table.get("directors", np.eye(3))).T
-
-
-def _point_of(p: Parts, body: str, point: Any) -> tuple[float, ...]:
-    if body == WORLD:
-        return tuple(float(x) for x in point)
-    table = next(t for t in p.root["body"] if t["name"] == body)
-    return tuple(float(x) for x in _axes_of(p, body).T @ (np.array(point) - np.array(table["position"])))
+    at = p.m.jnt_qposadr[j]
+    k = float(p.m.jnt_stiffness[j])
+    p.add("load", {"name": p.names.of(f"spring of {joint['name']}", "load"), "type": "bushing", "between": joint["between"],
+                   "frames": frames_of_ball(p, j, matrix_of(p.m.qpos_spring[at:at + 4])), "stiffness": (0.0, 0.0, 0.0, k, k, k)})
 
 
 # Along coordinates.

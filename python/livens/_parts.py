@@ -30,7 +30,8 @@ UNITS = {
     "potential": "J", "energy": "J", "work": "J", "drift": "J", "position_error": "m", "orientation_error": "rad",
     "velocity_error": "m/s", "rigidity_stress": "N m", "mean_stress": "Pa", "reaction_error": "1", "growth": "1", "t": "s", "power": "W",
     "acceleration": "m/s^2", "angular_acceleration": "rad/s^2", "center_acceleration": "m/s^2",
-    "angle_acceleration": "rad/s^2", "displacement_acceleration": "m/s^2"}
+    "angle_acceleration": "rad/s^2", "displacement_acceleration": "m/s^2",
+    **{f"angle_{k}{end}": unit for k in (1, 2, 3) for end, unit in (("", "rad"), ("_rate", "rad/s"), ("_acceleration", "rad/s^2"))}}
 _BODY_ARRAYS = ("position", "center_of_mass", "quaternion", "directors", "velocity", "angular_velocity",
                 "angular_velocity_body", "acceleration", "angular_acceleration", "linear_momentum", "angular_momentum")
 
@@ -290,7 +291,7 @@ class PointSeries(Part):
 
 
 class JointSeries(Part):
-    """A joint or drive along a motion; its coordinates (``angle``, ``displacement``, rates) are attributes, too."""
+    """A joint or drive along a motion; its coordinates (``angle``, ``displacement``, ``angle_1``, rates) are attributes, too."""
 
     def __init__(self, series: Series, name: str, index: int, first: int, coordinates: list[tuple[str, str]]) -> None:
         super().__init__(series, name, index)
@@ -332,8 +333,9 @@ class JointSeries(Part):
         return [*names, "force", "torque", *drives, *self._efforts()]
 
     def _efforts(self) -> dict[str, LoadSeries]:
-        """The loads that the joint states itself: "effort" along its coordinate, or of two "angle_effort" and the other."""
-        ends = {"": "effort", " angle": "angle_effort", " displacement": "displacement_effort"}
+        """The loads that the joint states itself: "effort" along its coordinate, of several "angle_effort" and the others;
+        "limit_effort" of a ball joint."""
+        ends = {"": "effort", " limit": "limit_effort", **{f" {name}": f"{name}_effort" for name in self.coordinates}}
         own = [name for name, type, told in self._series._result.loads if type == "joint" and told[0][0] == "effort"]
         return {word: self._series.loads[self._name + end] for end, word in ends.items() if self._name + end in own}
 

@@ -213,6 +213,19 @@ class Tells(unittest.TestCase):
                 sol = lv.solve(m, 0.3)
                 self.assertAlmostEqual(sol["q"].angle[-1], float(ratio) * sol["p"].angle[-1], delta=2e-7)
 
+    def test_balls_are_limited_from_where_their_quaternion_is_one(self):
+        def ball(most):
+            return arm(f"<joint name='p' type='ball' limited='true' range='0 {most}'/>", "")
+        m = self.made(ball(0.7), qpos=[np.cos(0.1), np.sin(0.1), 0, 0])
+        m.add_sensor("s", type="joint", joint="p")
+        sol = lv.solve(m, 0.01)
+        self.assertAlmostEqual(sol.sensors["s"].rotation_angle[0], 0.2, delta=1e-12)
+        self.assertAlmostEqual(m["p"].limit, 0.7, delta=1e-12)
+        for most, word in ((0.1, "limits are not kept at or beyond which a joint begins"), (3.1, "limits of ball joints beyond 170 degrees are not kept")):
+            m = self.made(ball(most), qpos=[np.cos(0.1), np.sin(0.1), 0, 0])
+            self.assertIn("1 joint ('p')", losses(m)["import-lost", word])
+            self.assertIsNone(m["p"].limit)
+
     def test_limits_are_kept_left_out_or_told(self):
         bodies = arm(HINGED.format("p", "0 1 0", "range='-1 1'"), HINGED.format("q", "0 1 0", "range='0 2'"))
         m = self.made(bodies)

@@ -320,7 +320,10 @@ std::optional<DriveEffort> drive_effort(const Joint& joint)
         return pair;
     };
     if (!row.label.starts_with("driven ") || row.drives.empty()) return {};
-    if (row.drives.size() == 1) return DriveEffort{{{static_cast<const PairForm&>(row)}}};
+    const bool is_angle = row.label.starts_with("driven angle");
+    if (row.drives.size() == 1)
+        return DriveEffort{{{static_cast<const PairForm&>(row)},
+                            is_angle ? CoordinateKind::arc_sine : CoordinateKind::displacement}};
     return DriveEffort{{{of_bodies(row.drives[1].form), of_bodies(row.drives[0].form)}}};
 }
 

@@ -47,7 +47,7 @@ struct Drive {
 
 /// A smooth function of a few numbers q, which are forms; see joint_coordinates.h.
 struct SmoothFunction {
-    static constexpr std::size_t most = 3;
+    static constexpr std::size_t most = 4;
     using Point = std::array<double, most>;
     struct Value {
         double value = 0;

@@ -89,6 +89,38 @@ SmoothFunction multiple(double factor)
             }};
 }
 
+/// What does not count turns, times a number.
+SmoothFunction multiple_of_function(CoordinateKind kind, std::size_t n, double factor)
+{
+    const auto at = [kind, factor](const Point& q) {
+        Value value = coordinate_at(kind, q);
+        value.value *= factor;
+        for (std::size_t i = 0; i < q.size(); ++i) {
+            value.gradient[i] *= factor;
+            for (double& one : value.hessian[i]) one *= factor;
+        }
+        return value;
+    };
+    return {at,
+            [at](const Point& from, std::span<const Point> steps, std::span<Value> out) {
+                const double before = at(from).value;
+                for (std::size_t i = 0; i < steps.size(); ++i) {
+                    Point to = from;
+                    for (std::size_t k = 0; k < to.size(); ++k) to[k] += steps[i][k];
+                    out[i] = at(to);
+                    out[i].value -= before;
+                }
+            },
+            n};
+}
+
+SmoothFunction multiple_of(const JointCoordinate& q, double factor)
+{
+    if (q.counts_turns()) return multiple_of_angle(factor);
+    if (!q.is_angle()) return multiple(factor);
+    return multiple_of_function(q.kind, q.forms.size(), factor);
+}
+
 // --- laws
 
 /// A law of a coordinate that differs by `shift` from what its forms say.
@@ -164,7 +196,7 @@ std::vector<double> factors_of_angles(const std::vector<CoupledCoordinate>& term
 {
     std::vector<double> factors;
     for (const auto& [factor, coordinate] : terms)
-        if (coordinate.is_angle()) factors.push_back(factor);
+        if (coordinate.counts_turns()) factors.push_back(factor);
     return factors;
 }
 
@@ -195,7 +227,7 @@ ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& terms, double c
             refuse_row("joint-row", "the factor of a coordinate must be finite and not zero", to_text(factor),
                        "", "", "");
         row.coordinates.insert(row.coordinates.end(), coordinate.forms.begin(), coordinate.forms.end());
-        row.functions.push_back(coordinate.is_angle() ? multiple_of_angle(factor) : multiple(factor));
+        row.functions.push_back(multiple_of(coordinate, factor));
     }
     if (terms.empty()) refuse_row("joint-row", "a row couples at least one coordinate", "", "", "", "");
     // After a whole turn of every angle the bodies stand as before; all the multiples of this period are one

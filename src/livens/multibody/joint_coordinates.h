@@ -3,6 +3,8 @@
 // round, screws, gears, racks, and points on curves.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <span>
@@ -13,18 +15,34 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
-/// One form, a displacement; or two, which are cosine and sine of an angle up to a common factor.
+/// What a coordinate is of its forms q.
+enum class CoordinateKind : std::uint8_t {
+    displacement,         ///< q_1, m
+    angle,                ///< atan2(q_2, q_1), with a common factor of both; turns are counted
+    outer_angle,          ///< the same where the factor may vanish: the first and the third of three angles
+    arc_sine,             ///< asin(q_1), up to a quarter turn: the second of three angles
+    rotation_component,   ///< component of a rotation vector, up to half a turn: see rotation_component()
+    rotation_angle        ///< its length, likewise
+};
+
+/// Of forms alone one is a displacement, two are an angle.
 struct JointCoordinate {
     std::vector<PairForm> forms;
+    CoordinateKind kind = forms.size() == 2 ? CoordinateKind::angle : CoordinateKind::displacement;
 
-    bool is_angle() const { return forms.size() == 2; }
+    /// It is measured in rad.
+    bool is_angle() const { return kind != CoordinateKind::displacement; }
+    /// Positions tell it up to whole turns, which are counted by whoever follows a motion, each the shorter
+    /// way: unwrapped_angles.h has those of loads. The others are what positions tell, or nothing, as
+    /// is_known() says below.
+    bool counts_turns() const { return kind == CoordinateKind::angle || kind == CoordinateKind::outer_angle; }
 };
 
 /// A coordinate of a joint: how far its second body is from its first, as the maker of the joint was told
 /// them, right-handed about the axis. Turns are counted from where the
 /// model has its bodies.
 struct NamedCoordinate {
-    std::string name;   ///< "angle" (rad) or "displacement" (m)
+    std::string name;   ///< "angle", "angle_1" (rad) or "displacement" (m)
     JointCoordinate coordinate;
     double at_stated = 0;   ///< what it is said to be where the model has its bodies
     /// The same while the joint holds, and what takes its place in a joint that does not always
@@ -32,6 +50,11 @@ struct NamedCoordinate {
     /// to axis is taken off, so that no direction across the axis matters, which nobody stated. Empty:
     /// nothing else is needed.
     JointCoordinate apart{};
+
+    /// One of several angles of a joint: where coordinates are chosen among many, those of joints that turn
+    /// about one axis and slide along one come first, as the legs of a platform before the crosses at their
+    /// ends.
+    bool is_numbered() const { return name.starts_with("angle_"); }
 };
 
 /// (X_i n) . (X_j b - X_i a): how far the point b of body j is beyond the point a of body i along the
@@ -47,8 +70,29 @@ JointCoordinate angle_between(int body_i, const Vector4& a1, const Vector4& a2, 
 JointCoordinate turn_between(int body_i, const Vector4& a1, const Vector4& a2, int body_j, const Vector4& b1,
                              const Vector4& b2);
 
+/// Two triads, the columns of both matrices, one on each body.
+struct TriadPair {
+    Matrix3 first = identity<3>(), second = identity<3>();
+};
+/// The three angles of the turn R = A^T B from the first triad A to the second B, about axes i, j and k of
+/// it: R = R_i(angle 1) R_j(angle 2) R_k(angle 3), where i, j, k are 0, 1, 2 in any order. The second angle
+/// stays within a quarter turn; where it gets there, the others are one.
+std::array<JointCoordinate, 3> angles_of_turn(int first, int second, const TriadPair& triads,
+                                              const std::array<int, 3>& sequence);
+/// Component k of the rotation vector of that turn, in axes of either triad: 0, 1, 2; and its length. Forms
+/// of the latter are s1, s2, s3 and c: the sine of the turn times its axis, and its cosine.
+JointCoordinate rotation_component(int first, int second, const TriadPair& triads, int k);
+JointCoordinate rotation_angle(int first, int second, const TriadPair& triads);
+
+/// A coordinate as a function of its forms.
+SmoothFunction::Value coordinate_at(CoordinateKind kind, const SmoothFunction::Point& forms);
+/// Whether the forms tell it: no angle is near where it is not unique, by 0.6 degrees of a quarter turn, or
+/// by 5 degrees of half a turn.
+bool is_known(CoordinateKind kind, const SmoothFunction::Point& forms);
+bool is_known(const JointCoordinate& coordinate, const Configurations& X);
+
 /// A coordinate in one configuration: an angle from -pi to pi, with no turns.
-double coordinate_value(const JointCoordinate& coordinate, std::span<const Matrix34> X);
+double coordinate_value(const JointCoordinate& coordinate, const Configurations& X);
 /// Its rate, linear in V.
 double coordinate_rate(const JointCoordinate& coordinate, std::span<const Matrix34> X,
                        std::span<const Matrix34> V);

@@ -34,6 +34,10 @@ struct Joint {
     /// Functions that must be positive at assembly, where rows alone would admit another branch.
     std::vector<ConstraintRow> branches{};
     std::vector<NamedCoordinate> coordinates{};
+    /// What is only read of it, beside its coordinates: the rotation vector of a ball joint.
+    std::vector<NamedCoordinate> readings{};
+    /// Of a ball joint with readings, in coordinates of `first` and `second`.
+    TriadPair triads{};
     /// It acts from one instant until another (s), which are events of the motion.
     double from = -std::numeric_limits<double>::infinity();
     double until = std::numeric_limits<double>::infinity();
@@ -82,7 +86,9 @@ Joint screw(const std::string& name, int first, int second, const JointFrame& fr
             const Matrix34& X_second, double pitch, double scale = 1);
 /// Two planes that stay in one, their common normal the axis. 3 rows. Coordinate: angle.
 Joint planar(const std::string& name, int first, int second, const JointFrame& frame, double scale = 1);
-/// Two perpendicular axes, one fixed in each body, and a common point. 4 rows.
+/// Two perpendicular axes, one fixed in each body, and a common point. 4 rows. Coordinates: angle_1, of the
+/// cross about the axis on the first body against this body, and angle_2, of the second body about its axis
+/// against the cross.
 Joint universal(const std::string& name, int first, int second, const JointFrame& frame, double scale = 1);
 /// Two shafts, along the axes, that meet in a point and turn equally, however they are bent. Where they
 /// stand now, one bend of the second takes it there. 4 rows. Throws InputError `joint-bend` for shafts that
@@ -91,6 +97,16 @@ Joint constant_velocity(const std::string& name, int first, int second, const Jo
                         const Matrix34& X_first, const Matrix34& X_second, double scale = 1);
 /// A common point. 3 rows.
 Joint spherical(const std::string& name, int first, int second, const JointFrame& frame, double scale = 1);
+
+/// How a ball joint is turned: by two triads, and by angles about their axes.
+struct BallTurn {
+    TriadPair triads;
+    std::string angles = {};   ///< "xyz", "zyx" and the like: three different axes; empty: it has no angles
+};
+/// The same with readings: the rotation vector from the first triad to the second and its length, and with
+/// coordinates angle_1, angle_2, angle_3 if it has angles. Throws InputError `joint-angles`.
+Joint spherical(const std::string& name, int first, int second, const JointFrame& frame, const BallTurn& turn,
+                const Matrix34& X_first, const Matrix34& X_second, double scale = 1);
 /// A point of the second body on a line of the first, which the first's axis is. 2 rows. Coordinate:
 /// displacement.
 Joint point_on_line(const std::string& name, int first, int second, const JointFrame& frame,

@@ -200,6 +200,7 @@ Joint relocated(Joint joint, const Relocation& to)
     if (joint.first == world) {
         joint.point_first = to.by.of_point(joint.point_first);
         joint.axis_first = to.by.rotation * joint.axis_first;
+        joint.triads.first = to.by.rotation * joint.triads.first;
         for (Vector3& x : joint.path) x = to.by.of_point(x);
     }
     relocate(joint.over, to);
@@ -207,8 +208,9 @@ Joint relocated(Joint joint, const Relocation& to)
     joint.second = to.body(joint.second);
     for (auto* rows : {&joint.rows, &joint.branches})
         for (ConstraintRow& row : *rows) relocate(row, to);
-    for (NamedCoordinate& one : joint.coordinates)
-        for (JointCoordinate* q : {&one.coordinate, &one.apart}) relocate(*q, to);
+    for (auto* all : {&joint.coordinates, &joint.readings})
+        for (NamedCoordinate& one : *all)
+            for (JointCoordinate* q : {&one.coordinate, &one.apart}) relocate(*q, to);
     return joint;
 }
 

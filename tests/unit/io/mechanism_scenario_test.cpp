@@ -169,6 +169,14 @@ std::vector<test::Case> cases_of_joints()
     return {
         {"joint-angle", joined("type = \"constant_angle\"\naxes = [[1, 0, 0], [1, 0, 0]]\nangle = 0"),
          "0\n[time]"},
+        {"joint-angles",
+         other("type = \"spherical\"\nbetween = [\"world\", \"c\"]\nat = [0, 0, 0]\nangles = \"xyz\"\n"
+               "[[body]]\nname = \"c\"\nmass = 1\nshape = { point = true }"),
+         "\"xyz\""},
+        {"drive-angle",
+         joined("type = \"spherical\"\nat = [0, 0, 0]\nangles = \"xyz\"\n[[drive]]\nname = \"d\"\n" +
+                on_joint + "coordinate = \"angle_2\"\nvalue = 2"),
+         "\"d\""},
         {"joint-bend", joined("type = \"constant_velocity\"\nat = [0, 0, 0]\naxes = [[1, 0, 0], [-1, 0, 0]]"),
          "[[1, 0, 0], [-1"},
         {"joint-coordinate", driven(on_joint + "coordinate = \"displacement\"\nvalue = 0"), "\"j\"\ncoord"},

@@ -88,6 +88,7 @@ const Table& table_of(const std::string& header, const std::string& type)
     if (header == "[[joint.over]]") heading = "point of a rope";
     if (header == "[joint.angle]" || header == "[joint.displacement]")
         heading = header.substr(7, header.size() - 8) + " of a joint";
+    if (header.starts_with("[joint.angle_")) heading = "angle of a joint";
     if (header == "[[joint.frames]]") heading = "frame of a joint";
     if (header == "[[load.frames]]") heading = "frame of a bushing";
     if (header == "[body.shape]") heading = "shape of [[body]]";

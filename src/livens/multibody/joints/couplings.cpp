@@ -38,7 +38,8 @@ const NamedCoordinate& coordinate_of(const std::string& path, const CoupledJoint
     refuse_terms("joint-coordinate", path,
                  "joint '" + joint.name + "' (" + joint.type + ") has no " + term.coordinate, "",
                  has.empty() ? "it has no coordinate" : "it has: " + has,
-                 "revolute, cylindrical, screw, planar and parallel_axes joints have an angle; prismatic, "
+                 "revolute, cylindrical, screw, planar and parallel_axes joints have an angle; universal "
+                 "joints angle_1 and angle_2, spherical ones with 'angles' angle_3 as well; prismatic, "
                  "cylindrical, screw and point_on_line joints a displacement");
 }
 
@@ -134,11 +135,7 @@ double check_terms(const std::string& path, const std::vector<CoupledJoint>& ter
 /// What a coordinate is called less what its forms say, without turns.
 double shift_of(const NamedCoordinate& q, const Configurations& X)
 {
-    const auto value = [&](std::size_t k) {
-        const PairForm& form = q.coordinate.forms[k];
-        return form_value(form, form.body_i, form.body_j, X);
-    };
-    return q.at_stated - (q.coordinate.is_angle() ? arc_tangent(value(1), value(0)) : value(0));
+    return q.at_stated - coordinate_value(q.coordinate, X);
 }
 
 /// Positions tell an angle up to turns: a law has to be the same after each, or known for less than one.
@@ -230,9 +227,13 @@ Joint coupling(const std::string& name, const std::vector<CoupledJoint>& terms, 
         const NamedCoordinate& q = coordinate_of(path, term);
         coordinates.push_back({term.factor, q.coordinate});
         shift += term.factor * shift_of(q, X);
-        has_angles = has_angles || q.coordinate.is_angle();
+        has_angles = has_angles || q.coordinate.counts_turns();
     }
     const bool is_angle = leader.coordinate.is_angle();
+    if (is_angle && !leader.coordinate.counts_turns())
+        refuse_terms("coupling-law", at_law, "a law cannot follow " + spoken(of), "",
+                     "an angle of a ball joint that ends at a quarter turn, or its rotation vector",
+                     "let it follow an angle of a revolute or universal joint, or a displacement");
     if (is_angle) fit_to_turns(at_law, spoken(of), leader.at_stated, has_angles, law.law);
     const std::string unit = is_angle ? " rad" : " m";
     law.what = spoken(of) + " leaves the law of '" + name + "', which is known from " +

@@ -60,7 +60,10 @@ public:
     void pull(LoadTape& tape, TapeNumber Q) const;
 
 private:
-    JointCoordinate coordinate_;
+    /// The function of the forms, its gradient and the rate by it, on a tape.
+    struct OnTape;
+
+    JointCoordinate coordinate_, placed_;   ///< of the model, and with places for bodies
     std::array<int, 2> bodies_{world, world};
     PerBody<char> needs_directors_{};
     ConstraintRow row_;   ///< of q, with places for bodies

@@ -196,6 +196,7 @@ Joint make_joint(Builder& builder, const Section& joint, const std::string& name
     const JointFrame frame = read_frame(builder, joint, first, second);
     const auto make = [&](const JointFrame& at) {
         JointParts parts{joint, name, first, second, at, X_first, X_second, builder.length()};
+        parts.has_point_mass = builder.is_point(first) || builder.is_point(second);
         parts.stretch_first = builder.stretch(first);
         parts.stretch_second = builder.stretch(second);
         return joint_kinds()[static_cast<std::size_t>(joint.kind())].make(parts);
@@ -248,11 +249,11 @@ Key coordinate_key()
 {
     return {"coordinate",
             types::choice,
-            "Which coordinate of the joint. Needed only if the joint has both.",
+            "Which coordinate of the joint. Needed only if the joint has several.",
             "",
             "",
             false,
-            {"angle", "displacement"}};
+            {"angle", "displacement", "angle_1", "angle_2", "angle_3"}};
 }
 
 JointReference find_coordinate(const Builder& builder, const Section& section, const std::string& path)
@@ -279,8 +280,10 @@ JointReference find_coordinate(const Builder& builder, const Section& section, c
              "joint '" + wanted + "' (" + joint->type + ") has no " +
                  (is_said ? section.text("coordinate") : "coordinate"),
              "", "", "",
-             "revolute, cylindrical, planar, screw and parallel_axes joints have an angle; prismatic, "
-             "cylindrical, screw and point_on_line joints a displacement"});
+             "revolute, cylindrical, planar, screw and parallel_axes joints have an angle; universal joints "
+             "angle_1 and angle_2, spherical ones with 'angles' angle_3 as well; prismatic, cylindrical, "
+             "screw "
+             "and point_on_line joints a displacement"});
     return {joint, of};
 }
 

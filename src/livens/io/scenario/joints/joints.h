@@ -25,6 +25,10 @@ struct JointReference {
     const Joint* joint;
     const NamedCoordinate* coordinate;
 };
+/// Of three angles of a ball joint the second is driven no farther than a quarter turn while it is (from,
+/// until). Throws InputError (`drive-angle`).
+void check_quarter_turn(const JointReference& of, const TimeFunction& law,
+                        const std::array<double, 2>& during, const std::string& path);
 /// Throws InputError (`joint-unknown`, `joint-coordinate`) at path.joint.
 JointReference find_coordinate(const Builder& builder, const Section& section, const std::string& path);
 

@@ -205,6 +205,7 @@ void read_coupling(Builder& builder, const Section& section, const std::string& 
                                                                                     world_configuration,
                                                                                     world_configuration,
                                                                                     builder.length(),
+                                                                                    false,
                                                                                     std::move(coupled),
                                                                                     leader,
                                                                                     X});
