@@ -31,6 +31,7 @@ struct NamedCoordinate {
     /// to axis is taken off, so that no direction across the axis matters, which nobody stated. Empty:
     /// nothing else is needed.
     JointCoordinate apart{};
+    double rotor_inertia = 0;   ///< adds 1/2 of it times the square of the rate to the kinetic energy
 };
 
 /// (X_i n) . (X_j b - X_i a): how far the point b of body j is beyond the point a of body i along the

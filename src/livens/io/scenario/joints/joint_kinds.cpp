@@ -50,6 +50,11 @@ std::vector<Key> keys_along_angle()
         Key{"stiffness", types::number, "Restoring torque per radian from `rest`.", "N m/rad", "0"}.within(
             not_negative),
         Key{"rest", types::number, "Unloaded angle of the stiffness.", "rad", "0"},
+        Key{"rotor_inertia", types::number,
+            "Inertia along the angle, as of a geared rotor: adds half of it times the square of the rate to "
+            "the kinetic energy. lobatto and radau only.",
+            "kg m^2"}
+            .within(positive),
         Key{"limits", types::interval,
             "Smallest and largest angle; `-inf` or `inf` means no limit. Beyond a limit by d, a torque "
             "limit_stiffness d (1 + limit_damping d') pushes back; it never pulls.",
@@ -71,6 +76,11 @@ std::vector<Key> keys_along_displacement()
             Key{"stiffness", types::number, "Restoring force per metre from `rest`.", "N/m", "0"}.within(
                 not_negative),
             Key{"rest", types::number, "Unloaded displacement of the stiffness.", "m", "0"},
+            Key{"rotor_inertia", types::number,
+                "Inertia along the displacement, as of a geared rotor: adds half of it times the square of "
+                "the rate to the kinetic energy. lobatto and radau only.",
+                "kg"}
+                .within(positive),
             Key{"limits", types::interval,
                 "Smallest and largest displacement; `-inf` or `inf` means no limit. Beyond a limit by d, a "
                 "force limit_stiffness d (1 + limit_damping d') pushes back; it never pulls.",
