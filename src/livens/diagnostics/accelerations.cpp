@@ -29,12 +29,18 @@ std::vector<int> most_rows(const Model& acting, std::span<const State> places)
     return most;
 }
 
+std::optional<WithRotors> rotors_of_acting(const Model& model)
+{
+    return model.has_rotors() ? std::optional<WithRotors>(model) : std::nullopt;
+}
+
 }   // namespace
 
 /// The joints that act together, and what solves at an instant with them.
 struct Accelerations::Phase {
     Phase(const Model& all, double t, std::span<const State> places)
-        : acting(acting_at(all, t)), tables(whole(), most_rows(whole(), with_rotors(places))), instant(tables)
+        : acting(acting_at(all, t)), rotors(rotors_of_acting(acting.model)),
+          tables(whole(), most_rows(whole(), with_rotors(places))), instant(tables)
     {
         solved.resize(tables);
     }
@@ -43,12 +49,8 @@ struct Accelerations::Phase {
     [[gnu::visibility("hidden")]] bool accelerate(const State& state, const std::vector<double>& angles,
                                                   Side side);
 
-    /// Once `acting` is there; rotors stand behind bodies and rows of the model.
-    const Model& whole()
-    {
-        if (acting.model.has_rotors() && !rotors) rotors.emplace(acting.model);
-        return rotors ? rotors->model() : acting.model;
-    }
+    /// Rotors stand behind bodies and rows of the model.
+    const Model& whole() const { return rotors ? rotors->model() : acting.model; }
     std::vector<State> with_rotors(std::span<const State> places) const
     {
         std::vector<State> all(places.begin(), places.end());
@@ -58,7 +60,7 @@ struct Accelerations::Phase {
     }
 
     ActingModel acting;
-    std::optional<WithRotors> rotors{};
+    std::optional<WithRotors> rotors;
     ModelTables tables;
     InstantSystem instant;
     InstantState solved;

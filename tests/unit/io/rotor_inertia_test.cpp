@@ -3,7 +3,7 @@
 // it.
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -89,12 +89,14 @@ std::string joint(const std::string& type, const std::string& name, const std::s
            "\nat = " + at + "\naxis = " + axis + "\n" + keys + "\n";
 }
 
-std::string rotor(double inertia)
+std::string number(double x)
 {
     char text[64];
-    std::snprintf(text, sizeof text, "rotor_inertia = %.17g", inertia);
+    std::snprintf(text, sizeof text, "%.17g", x);
     return text;
 }
+
+std::string rotor(double inertia) { return "rotor_inertia = " + number(inertia); }
 
 /// On a hinge across gravity, with the inertia about it as given, and turned off from rest.
 std::string pendulum(const std::string& inertia, const std::string& keys)
@@ -109,11 +111,11 @@ TEST(RotorInertia, ATorqueTurnsAFlywheelByTheSumOfInertias)
 {
     for (const double a : {1e-9, 0.3, 1e6}) {
         const double torque = 3 * (0.5 + a);
-        const Solved s =
-            solved(body("wheel", "[0, 0, 0]", "[0.3, 0.4, 0.5]") +
-                   joint("revolute", "axle", "[\"world\", \"wheel\"]", "[0, 0, 0]", "[0, 0, 1]", rotor(a)) +
-                   "[[load]]\nname = \"motor\"\ntype = \"actuator\"\njoint = \"axle\"\nvalue = " +
-                   std::to_string(torque) + in_time(2, 40, fine));
+        const Solved s = solved(
+            body("wheel", "[0, 0, 0]", "[0.3, 0.4, 0.5]") +
+            joint("revolute", "axle", "[\"world\", \"wheel\"]", "[0, 0, 0]", "[0, 0, 1]", rotor(a)) +
+            "[[load]]\nname = \"motor\"\ntype = \"actuator\"\njoint = \"axle\"\nvalue = " + number(torque) +
+            in_time(2, 40, fine));
         EXPECT_NEAR(s.moved(0), 6, 1e-11) << a;
         EXPECT_NEAR(s.rate(0), 6, 1e-11) << a;
         EXPECT_TRUE(s.solution.verdict.reasons.empty()) << s.solution.verdict.reasons.front();
@@ -185,8 +187,8 @@ std::string linkage(const std::string& first, const std::string& second, const s
 /// A point on a line of the world, bound by a rack of radius 1.
 std::string bound(const std::string& joint, double inertia, int axis)
 {
-    const char* axes[] = {"[0.9811, 0, 0.1]", "[0, 0.9811, 0.2]", "[0.9811, 0, 0.1]"};
-    return "[[body]]\nname = \"p " + joint + "\"\nmass = " + std::to_string(inertia) +
+    const char* axes[] = {"[0.981, 0, 0.1]", "[0, 0.981, 0.2]", "[0.981, 0, 0.1]"};
+    return "[[body]]\nname = \"p " + joint + "\"\nmass = " + number(inertia) +
            "\nshape = { point = true }\nposition = [0, 0, 0]\n[[joint]]\nname = \"l " + joint +
            "\"\ntype = \"point_on_line\"\nbetween = [\"world\", \"p " + joint +
            "\"]\nat = [0, 0, 0]\naxis = " + axes[axis] +
