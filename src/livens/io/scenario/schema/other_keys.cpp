@@ -157,8 +157,7 @@ constexpr OtherKey other_keys[] = {
      "limit range lower upper min max stop stops jointlimits lowerlimit upperlimit limited hardstop "
      "jointrange",
      "limits", "limits = [\"-90 deg\", \"90 deg\"], of the coordinate; beyond them acts a stiff spring"},
-    {"[[joint]]", "", "armature rotor reflectedinertia motorinertia gearedinertia rotorinertia",
-     "rotor_inertia", "n^2 J of a rotor of inertia J behind a gear of ratio n"},
+    {"[[joint]]", "", "armature rotor reflectedinertia motorinertia gearedinertia", "rotor_inertia"},
     {"[[joint]]", "", "limitspring limitk stopstiffness contactstiffness", "limit_stiffness"},
     {"[[joint]]", "", "limitc stopdamping contactdamping dissipation", "limit_damping"},
     {"[[joint]]", "",
