@@ -450,6 +450,24 @@ TEST(LobattoEnds, FocalTimesOfAPendulumAreSingular)
     }
 }
 
+/// A bob in oil that keeps e^-25 of its speed: its momentum at the end tells the one it had, to as many
+/// digits as are stated.
+TEST(LobattoEnds, AreMetByMotionsThatDecay)
+{
+    constexpr double damping = 12.5, end = 2;
+    Model model;
+    const int bob = model.add_body(point_mass("bob", 1, {}));
+    model.add_load(spring_damper("oil", world, {-10, 0, 0}, bob, {}, {.damping = damping}));
+    State start = model.start(), finish = start;
+    finish.t = end;
+    const double last = 3 * std::exp(-damping * end);
+    finish.V[0](0, 0) = last;
+    const Solution s = solve(model, {start, Known::positions, finish, Known::momenta},
+                             make_time_mesh(0, end, 40), lobatto(8));
+    EXPECT_TRUE(s.report.converged()) << s.report.message;
+    EXPECT_NEAR(s.motion.at_end(0).V[0](0, 0), 3, 1e-9);
+}
+
 /// A ball that spins once about its third axis in a second; what is between positions `end` seconds apart.
 std::string refusal_of_spin(double end)
 {

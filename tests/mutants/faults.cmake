@@ -1447,3 +1447,27 @@ livens_mutant(NAME rotor_curvature
               NEW [[0 * constraint_curvature(row, {mechanism->placed.t}, placed.X, state.V));]]
               TESTS_OF unit_io
               MUST_FAIL RotorInertia.IsOneDiagonalTermOfTheMassMatrix)
+
+# Growth of entries from merger to merger is not watched: right wherever exchanges do.
+livens_mutant(NAME chain_without_reflections
+              FILE solvers/chain.cpp
+              OLD [[if (is_done && growth <= most_growth)]]
+              NEW [[if (is_done)]]
+              TESTS_OF unit_solvers
+              MUST_FAIL ChainSolver.TurnsToReflectionsWhereExchangesLetEntriesGrow)
+
+# The border of what is left of the elements before is dropped: right for a chain of one element.
+livens_mutant(NAME chain_forgets_the_border
+              FILE solvers/chain.cpp
+              OLD [[std::copy_n(from + c + n, b, others + c + far);]]
+              NEW [[std::copy_n(from + c + n, 0, others + c + far);]]
+              TESTS_OF unit_solvers
+              MUST_FAIL ChainSolver.AgreesWithTheWholeMatrixForAllSizesAndBorders)
+
+# What rounding may move is not compared: motions that the conditions leave free are told as known.
+livens_mutant(NAME free_motions_are_taken
+              FILE spacetime/solve_mesh.cpp
+              OLD [[if (found.size <= undetermined) return;]]
+              NEW [[if (found.size <= 1e300) return;]]
+              TESTS_OF convergence
+              MUST_FAIL LobattoEnds.ConjugateTimesOfAPendulumAreSingular)

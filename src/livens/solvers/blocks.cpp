@@ -51,12 +51,19 @@ void BlockStructure::check() const
         std::any_of(n_unknowns.begin(), n_unknowns.end(), is_negative))
         refuse("a count is negative");
     check_elements(*this);
-    const int rows = std::accumulate(n_rows.begin(), n_rows.end(), 0);
-    const int unknowns = std::accumulate(n_unknowns.begin(), n_unknowns.end(), 0);
+    if (n_border < 0 || n_closing < 0) refuse("a count of the border is negative");
+    if (n_nodes() == 0 && (n_border > 0 || n_closing > 0)) refuse("a border without nodes");
+    const int rows = std::accumulate(n_rows.begin(), n_rows.end(), n_closing);
+    const int unknowns = size_of(*this);
     // Which rows are active depends on the conditions at the ends of time; a mistake there shows up here
     // first.
     if (rows != unknowns)
         refuse(std::to_string(rows) + " rows for " + std::to_string(unknowns) + " unknowns");
+}
+
+int size_of(const BlockStructure& structure)
+{
+    return std::accumulate(structure.n_unknowns.begin(), structure.n_unknowns.end(), structure.n_border);
 }
 
 void running_sums(std::span<const int> counts, std::vector<int>& starts)
@@ -75,11 +82,18 @@ void BlockMatrix::resize(const BlockStructure& structure)
     storage_.resize(elements_.size());
     // assign() keeps the memory of an element whose size has not grown: marches refill one matrix for ever.
     for (int e = 0; e < n_elements(); ++e) storage(e).assign(entries(n_rows(e), n_columns(e)), 0.0);
+    n_border_ = structure.n_border;
+    border_.resize(elements_.size());
+    for (int e = 0; e < n_elements(); ++e) border_storage(e).assign(entries(n_rows(e), n_border_), 0.0);
+    const int seen = elements_.empty() ? 0 : structure.n_unknowns.front() + structure.n_unknowns.back();
+    closing_.assign(entries(structure.n_closing, seen + n_border_), 0.0);
 }
 
 void BlockMatrix::clear()
 {
-    for (auto& values : storage_) std::fill(values.begin(), values.end(), 0.0);
+    for (auto* of : {&storage_, &border_})
+        for (auto& values : *of) std::fill(values.begin(), values.end(), 0.0);
+    std::fill(closing_.begin(), closing_.end(), 0.0);
 }
 
 int BlockMatrix::n_rows(int element) const
@@ -107,9 +121,16 @@ std::size_t BlockMatrix::place(int element, int row_node, int column_node) const
                     storage_[static_cast<std::size_t>(element)].size());
 }
 
+std::size_t BlockMatrix::border_place(int element, int row_node) const
+{
+    const auto from = static_cast<std::size_t>(elements_[static_cast<std::size_t>(element)][0]);
+    return entries(first_row_[static_cast<std::size_t>(row_node)] - first_row_[from], n_border_);
+}
+
 namespace {
 
-/// Calls visit(row, column, value) for the entries that are not zero, element after element, rows ascending.
+/// Calls visit(row, column, value) for the entries that are not zero, element after element, rows ascending,
+/// and then of the closing rows.
 template <class Visit>
 void for_each_entry(const BlockStructure& structure, const BlockMatrix& matrix, const Visit& visit)
 {
@@ -124,7 +145,19 @@ void for_each_entry(const BlockStructure& structure, const BlockMatrix& matrix, 
                 // Exact zeros are left out, which is what keeps blocks of bodies without a common joint or
                 // load apart.
                 if (*value != 0) visit(first_row[node] + i, first_unknown[node] + j, *value);
+        if (structure.n_border == 0) continue;
+        value = matrix.border_storage(e).data();
+        for (int i = 0; i < matrix.n_rows(e); ++i)
+            for (int j = 0; j < structure.n_border; ++j, ++value)
+                if (*value != 0) visit(first_row[node] + i, first_unknown.back() + j, *value);
     }
+    if (structure.n_closing == 0) return;
+    const int first = structure.n_unknowns.front(), last = structure.n_unknowns.back();
+    const double* value = matrix.closing().data();
+    for (int i = 0; i < structure.n_closing; ++i)
+        for (int j = 0; j < first + last + structure.n_border; ++j, ++value)
+            if (*value != 0)
+                visit(first_row.back() + i, j < first ? j : first_unknown.back() - last + j - first, *value);
 }
 
 /// Sorts the rows of every column and adds equal ones: elements ascend, but what they share comes twice.
@@ -161,7 +194,7 @@ void add_up(SparseMatrix& A)
 SparseMatrix to_sparse(const BlockStructure& structure, const BlockMatrix& matrix)
 {
     SparseMatrix A;
-    A.size = std::accumulate(structure.n_unknowns.begin(), structure.n_unknowns.end(), 0);
+    A.size = size_of(structure);
     A.column_starts.assign(static_cast<std::size_t>(A.size) + 1, 0);
     for_each_entry(structure, matrix, [&](int, int column, double) { ++A.column_starts[column + 1]; });
     std::partial_sum(A.column_starts.begin(), A.column_starts.end(), A.column_starts.begin());

@@ -98,6 +98,7 @@ public:
         is_regular_ = false;
         singular_node_ = -1;
         structure.check();
+        if (structure.n_border > 0 || structure.n_closing > 0) refuse("there is a border");
         is_mirrored_ = choose_end(structure);
         running_sums(structure.n_rows, first_row_);
         running_sums(structure.n_unknowns, first_unknown_);

@@ -50,7 +50,14 @@ public:
 /// other. A single element is factorised in the matrix' own storage. Allocates nothing after analyse().
 std::unique_ptr<LinearSolver> forward_solver();
 
-/// For any conditions: one sparse matrix, and one step of iterative refinement. The pattern are the entries
+/// For any conditions, elements that share one node each, and a border: each element is condensed to its two
+/// ends, and these are merged one after the other, with row exchanges between neighbours and reflections
+/// where entries would grow; closing rows and what is left then make one dense matrix. One step of iterative
+/// refinement. Takes the values of the matrix away. Time and memory grow with the number of elements; factors
+/// of one element with n unknowns inside and f at each end take about n (n + 5 f) + 24 f f numbers.
+std::unique_ptr<LinearSolver> chain_solver();
+
+/// For any structure: one sparse matrix, and one step of iterative refinement. The pattern are the entries
 /// that were not zero in some factorisation since analyse(); it is analysed anew where it has grown. Pivots,
 /// largest entry and singular node are not known. Throws InputError where the build lacks the backend.
 std::unique_ptr<LinearSolver> whole_solver(SparseBackend backend);

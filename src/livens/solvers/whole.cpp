@@ -27,9 +27,8 @@ public:
         structure_.reset();   // stays so if the structure is refused
         structure.check();
         pattern_.resize(structure);
-        places_.assign(static_cast<std::size_t>(structure.n_elements()), {});
-        for (int e = 0; e < structure.n_elements(); ++e)
-            places_[static_cast<std::size_t>(e)].assign(pattern_.storage(e).size(), none);
+        places_.assign(2 * static_cast<std::size_t>(structure.n_elements()) + 1, {});
+        for (int k = 0; k < n_parts(); ++k) places_[k].assign(part(pattern_, k).size(), none);
         running_sums(structure.n_unknowns, first_unknown_);
         running_sums(structure.n_rows, first_row_);
         structure_ = structure;
@@ -42,9 +41,9 @@ public:
         // so it is analysed a few times at most.
         if (has_grown(matrix)) find_pattern();
         std::fill(matrix_.values.begin(), matrix_.values.end(), 0.0);
-        for (int e = 0; e < matrix.n_elements(); ++e) {
-            const Values& values = matrix.storage(e);
-            const std::vector<int>& places = places_[static_cast<std::size_t>(e)];
+        for (int k = 0; k < n_parts(); ++k) {
+            const Values& values = part(matrix, k);
+            const std::vector<int>& places = places_[k];
             for (std::size_t i = 0; i < values.size(); ++i)
                 if (places[i] != none) matrix_.values[static_cast<std::size_t>(places[i])] += values[i];
         }
@@ -61,18 +60,38 @@ public:
 private:
     static constexpr int none = -1;
 
+    /// All numbers of a matrix: of the elements in turn their blocks and what stands in the border, then the
+    /// closing rows.
+    int n_parts() const { return static_cast<int>(places_.size()); }
+    static const Values& part(const BlockMatrix& matrix, int k)
+    {
+        if (k / 2 == matrix.n_elements()) return matrix.closing();
+        return k % 2 == 0 ? matrix.storage(k / 2) : matrix.border_storage(k / 2);
+    }
+    /// Column of the whole matrix, of a number of a part in column j of it.
+    int column_of(int k, int j) const
+    {
+        const int behind = first_unknown_.back();
+        if (k / 2 == structure_->n_elements()) {
+            const int first = structure_->n_unknowns.front(), last = structure_->n_unknowns.back();
+            return j < first ? j : behind - last + j - first;
+        }
+        const auto node = static_cast<std::size_t>(structure_->elements[static_cast<std::size_t>(k / 2)][0]);
+        return j + (k % 2 == 0 ? first_unknown_[node] : behind);
+    }
+
     /// Whether an entry outside of the pattern is not zero; marks them all.
     bool has_grown(const BlockMatrix& matrix)
     {
         assert(structure_ && matrix.n_elements() == structure_->n_elements());
         bool grown = false;
-        for (int e = 0; e < matrix.n_elements(); ++e) {
-            const Values& values = matrix.storage(e);
-            const std::vector<int>& places = places_[static_cast<std::size_t>(e)];
+        for (int k = 0; k < n_parts(); ++k) {
+            const Values& values = part(matrix, k);
+            const std::vector<int>& places = places_[k];
             assert(values.size() == places.size());
             for (std::size_t i = 0; i < values.size(); ++i) {
                 if (places[i] != none || values[i] == 0) continue;
-                pattern_.storage(e)[i] = 1;
+                const_cast<Values&>(part(pattern_, k))[i] = 1;   // the pattern is its own
                 grown = true;
             }
         }
@@ -82,28 +101,32 @@ private:
     void find_pattern()
     {
         matrix_ = to_sparse(*structure_, pattern_);
-        for (int e = 0; e < structure_->n_elements(); ++e) find_places(e);
+        for (int k = 0; k < n_parts(); ++k) find_places(k);
         const auto size = static_cast<std::size_t>(matrix_.size);
         for (Values* v : {&right_side_, &residual_, &correction_}) v->assign(size, 0.0);
         lu_.analyse(matrix_);
     }
 
-    /// Where the entries of an element stand in the sparse matrix.
-    void find_places(int e)
+    /// Where the entries of a part stand in the sparse matrix.
+    void find_places(int k)
     {
-        const auto node = static_cast<std::size_t>(structure_->elements[static_cast<std::size_t>(e)][0]);
-        const int n_columns = pattern_.n_columns(e);
-        const Values& values = pattern_.storage(e);
+        const Values& values = part(pattern_, k);
+        if (values.empty()) return;
+        const bool is_closing = k / 2 == structure_->n_elements();
+        const int n_rows = is_closing ? structure_->n_closing : pattern_.n_rows(k / 2);
+        const int n_columns = static_cast<int>(values.size()) / n_rows;
+        const int first_row = is_closing ? first_row_.back()
+                                         : first_row_[static_cast<std::size_t>(
+                                               structure_->elements[static_cast<std::size_t>(k / 2)][0])];
         for (std::size_t i = 0; i < values.size(); ++i) {
             if (values[i] == 0) continue;
-            const int row = first_row_[node] + static_cast<int>(i) / n_columns;
-            const auto column =
-                static_cast<std::size_t>(first_unknown_[node] + static_cast<int>(i) % n_columns);
+            const int row = first_row + static_cast<int>(i) / n_columns;
+            const auto column = static_cast<std::size_t>(column_of(k, static_cast<int>(i) % n_columns));
             const auto begin = matrix_.rows.begin() + matrix_.column_starts[column];
             const auto end = matrix_.rows.begin() + matrix_.column_starts[column + 1];
             const auto found = std::lower_bound(begin, end, row);
             // The search is done once for a pattern; each factorisation then adds entries at known places.
-            places_[static_cast<std::size_t>(e)][i] = static_cast<int>(found - matrix_.rows.begin());
+            places_[k][i] = static_cast<int>(found - matrix_.rows.begin());
         }
     }
 
@@ -125,7 +148,7 @@ private:
     SparseLU lu_;
     std::optional<BlockStructure> structure_;
     BlockMatrix pattern_;                    // 1 where an entry was not zero
-    std::vector<std::vector<int>> places_;   // of the elements' entries in the sparse matrix
+    std::vector<std::vector<int>> places_;   // of the parts' entries in the sparse matrix
     std::vector<int> first_unknown_, first_row_;
     SparseMatrix matrix_;
     mutable Values right_side_, residual_, correction_;

@@ -64,4 +64,4 @@ constexpr std::array<std::string_view, 3> words_of(SolveOptions::Estimate)
     return {"second", "local", "none"};
 }
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -52,6 +52,8 @@ struct Problem {
     /// What was found of the model when it was solved before, for less work; null: nothing, and nothing is
     /// kept. One thread at a time.
     std::shared_ptr<Prepared> prepared{};
+    /// Whether conditions at both ends determine the motion is asked of its equations.
+    bool is_determination_asked = true;
 };
 
 }   // namespace livens

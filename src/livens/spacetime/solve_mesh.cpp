@@ -27,9 +27,9 @@ namespace livens::inline spacetime_internal {
 
 namespace {
 
-/// Beyond, conditions at both ends do not determine the motion: the matrix of a window of N nodes has a
-/// condition number of N^2 or so, and 1e16 where the conditions leave a motion free.
-constexpr double undetermined = 1e11;
+/// Beyond, conditions at both ends do not determine the motion: the share of it that rounding may move. Where
+/// they leave a motion free it is about 1.
+constexpr double undetermined = 1e-4;
 
 std::unique_ptr<Window> make_window(const ModelTables& tables, const TimeMesh& mesh, const Ends& ends,
                                     const Method& method, bool look_at_laws, const Motion* near)
@@ -170,9 +170,8 @@ private:
 /// many, and its digits are made of rounding.
 void refuse_undetermined(Window& window, ConditionNumbersOfLast& last, SolveReport& report)
 {
-    SolveReport measured;
-    last.measure(report,
-                 [&](const auto& goes_on) { window.equations().measure_condition(measured, goes_on); });
+    Uncertainty found;
+    last.measure(report, [&](const auto&) { found = window.uncertainty(); });
     if (last.is_stopped()) return;
     if (last.has_no_memory()) {
         report.status = SolveStatus::suspect;
@@ -180,16 +179,15 @@ void refuse_undetermined(Window& window, ConditionNumbersOfLast& last, SolveRepo
             "memory ended before it was found whether the conditions at the two ends determine the motion";
         return;
     }
-    // Inequality: condition number < 1e11, else the conditions do not determine the motion (theory.md,
-    // "Windows").
-    const bool is_singular = !measured.notes.empty() || !(measured.condition_1 < undetermined);
-    if (!is_singular) return;
+    // Inequality: what rounding may move <= 1e-4 of the motion, else the conditions do not determine it
+    // (theory.md, "Windows").
+    if (found.size <= undetermined) return;
     report.status = SolveStatus::singular;
-    report.message =
-        "the conditions at the two ends of time do not determine the motion (condition number " +
-        (measured.notes.empty() ? to_text(measured.condition_1, 6) : std::string("infinite")) +
-        "): a neighbouring motion satisfies them as well, as at conjugate and focal times; try: another "
-        "duration, or the state at one end";
+    report.message = "the conditions at the two ends of time do not determine the motion: rounding alone may "
+                     "move it by " +
+                     to_text(found.size, 3) + " of itself, most of all " + found.name +
+                     "; a neighbouring motion satisfies them as well, as at conjugate and focal times; try: "
+                     "another duration, or the state at one end";
 }
 
 /// The equations of a march as those of one window, at its motion: of all elements, or of radau the last one.
@@ -229,7 +227,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     w.propose = Proposals(model, problem, mesh, ends, method, *window);
     solve_windows(*window, mesh, w, report);
     ConditionNumbersOfLast last(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
-    if (!ends.has_state() && !is_mixed && report.status != SolveStatus::cancelled)
+    if (!ends.has_state() && !is_mixed && problem.is_determination_asked && report.converged())
         refuse_undetermined(*window, last, report);
     // A march forms no matrix of single elements, and where it divided some, not of all.
     const bool is_whole = is_mixed || !ends.has_state();

@@ -88,6 +88,21 @@ inline BlockStructure spline_structure(int n_elements, int degree, int size)
     return s;
 }
 
+/// With a border of n unknowns. `n_open` rows less at the ends, as of conditions that see both; closing rows
+/// for these and for the border.
+inline BlockStructure bordered(BlockStructure s, int n, int n_open)
+{
+    s.n_border = n;
+    s.n_closing = n;
+    for (int i = 0; i < n_open; ++i) {
+        int& rows = i % 2 == 0 ? s.n_rows.back() : s.n_rows.front();
+        if (rows == 0) continue;
+        --rows;
+        ++s.n_closing;
+    }
+    return s;
+}
+
 /// Where an element's matrix begins in the whole one.
 struct Corner {
     int row = 0, column = 0;
@@ -118,7 +133,9 @@ inline void fill(const BlockStructure& s, std::uint64_t seed, BlockMatrix& matri
                 *value += 4;
                 taken = 1;
             }
+        for (double& v : matrix.border_storage(e)) v = 0.5 * random.next();
     }
+    for (double& v : matrix.closing()) v = random.next();
 }
 
 /// The sum of the elements' matrices, block by block.
@@ -127,9 +144,20 @@ inline Dense dense(const BlockStructure& s, const BlockMatrix& matrix)
     std::vector<int> rows, unknowns;
     running_sums(s.n_rows, rows);
     running_sums(s.n_unknowns, unknowns);
-    Dense A(rows.back());
+    Dense A(size_of(s));
+    const int behind = unknowns.back();
+    const int n_seen = s.n_closing > 0 ? s.n_unknowns.front() + s.n_unknowns.back() + s.n_border : 0;
+    for (int i = 0; i < s.n_closing; ++i)
+        for (int j = 0; j < n_seen; ++j) {
+            const int first = s.n_unknowns.front(), last = s.n_unknowns.back();
+            const int column = j < first ? j : behind - last + j - first;
+            A(rows.back() + i, column) += matrix.closing()[static_cast<std::size_t>(i * n_seen + j)];
+        }
     for (int e = 0; e < s.n_elements(); ++e) {
         const auto [first, last] = s.elements[static_cast<std::size_t>(e)];
+        for (int i = 0; i < matrix.n_rows(e) * s.n_border; ++i)
+            A(rows[static_cast<std::size_t>(first)] + i / s.n_border, behind + i % s.n_border) +=
+                matrix.border_storage(e)[static_cast<std::size_t>(i)];
         for (int a = first; a <= last; ++a)
             for (int b = first; b <= last; ++b) {
                 const double* block = matrix.block(e, a, b);

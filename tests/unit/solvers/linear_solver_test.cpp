@@ -39,17 +39,26 @@ std::vector<BlockStructure> forward_structures()
     return found;
 }
 
-std::vector<BlockStructure> all_structures()
+std::vector<BlockStructure> chains()
 {
     std::vector<BlockStructure> found = forward_structures();
     for (int n = 1; n <= 12; ++n) found.push_back(random_structure(n, static_cast<std::uint64_t>(n)));
+    for (int n = 1; n <= 24; ++n)
+        found.push_back(bordered(random_structure(1 + n / 2, static_cast<std::uint64_t>(n)), n % 4, n % 2));
+    return found;
+}
+
+std::vector<BlockStructure> all_structures()
+{
+    std::vector<BlockStructure> found = chains();
     for (int degree = 1; degree <= 3; ++degree) found.push_back(spline_structure(6, degree, 3));
     return found;
 }
 
 std::vector<Case> cases()
 {
-    std::vector<Case> found = {{"Forward", forward_solver, forward_structures()}};
+    std::vector<Case> found = {{"Forward", forward_solver, forward_structures()},
+                               {"Chain", chain_solver, chains()}};
     for (const SparseBackend backend : backends_of_this_build())
         found.push_back({std::string("Whole") + name_of(backend), [=] { return whole_solver(backend); },
                          all_structures()});

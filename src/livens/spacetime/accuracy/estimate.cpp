@@ -66,7 +66,7 @@ ReferenceSolution::ReferenceSolution(const Model& model, const Problem& problem,
 {
     problem_.guess = [&first](double t) { return first.at(t); };
     problem_.near = &first;
-    options_.condition = options_.judge = false;
+    options_.condition = options_.judge = problem_.is_determination_asked = false;
     options_.meeting = std::numeric_limits<double>::infinity();   // both meet it within their errors
     if (const auto* radau = std::get_if<Radau>(&method)) method_ = Radau{radau->degree + 1};
     if (!is_nodal(method))   // the given number is one for blocks or steps

@@ -51,6 +51,13 @@ struct AcceptedElements {
     std::string load{};
 };
 
+/// What conditions at both ends leave open.
+struct Uncertainty {
+    double size =
+        0;   ///< how far the rounding of rows may move the solution, by the motion inside of elements
+    std::string name;   ///< what moves most then: "body 'rod' near t = 0.5 s"
+};
+
 /// What a family may know of single elements of a march forwards or backwards, beyond their equations. As it
 /// stands here it knows nothing.
 class ElementMonitor {
@@ -113,6 +120,8 @@ public:
     /// between nodes beyond `trust`), or whose end is no state to go on from (the report says why). What was
     /// refused for its rank may be closed all the same, without asking for that.
     virtual AcceptedElements close(const AcceptanceCriteria& criteria, SolveReport& report) = 0;
+    /// Of the solution at hand, by the last factors. 0: the family does not say.
+    virtual Uncertainty uncertainty() { return {}; }
     /// Where the residual is worst, or the load that is not finite.
     virtual WorstResidual worst() const = 0;
     /// Figures that only the family knows: unknowns, pivots, entries of factors.

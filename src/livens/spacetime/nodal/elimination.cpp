@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Z_A^T D^T J_AB D Z_B: the tangent on what the constraints leave free, for a solver of blocks; of one
-// element of degree 1, whose tangent couples no bodies, body by body with a Schur complement of the
-// constraints (docs/theory.md, "Eliminating the joint multipliers", "Newton's iteration", "The whole matrix
-// of lobatto").
+// Z_A^T D^T J_AB D Z_B: the tangent on what the constraints leave free, for a solver of blocks
+// (docs/theory.md, "Eliminating the joint multipliers", "The whole matrix of lobatto").
 #include "livens/spacetime/nodal/elimination.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -75,9 +74,17 @@ public:
     {
         if (f_ > 0 && structure_.n_elements() > 1) report.factor_entries = solver_->report().factor_entries;
     }
+    double least_resisted(std::span<const double> rows, std::vector<double>& y) override;
     void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
 
 private:
+    LinearMap applying(void (LinearSolver::*apply)(std::span<double>) const) const
+    {
+        return [this, apply](std::span<const double> x, std::span<double> y) {
+            std::copy(x.begin(), x.end(), y.begin());
+            ((*solver_).*apply)(y);
+        };
+    }
     std::size_t place(int A) const
     {
         return static_cast<std::size_t>(A) * static_cast<std::size_t>(tables_.n_twists * f_);
@@ -234,6 +241,43 @@ void NullSpaces::solve(std::span<const double> rows, const double*, double* y)
     }
 }
 
+/// A few powers of A^-1 W W A^-T, W the sizes of rows: the largest singular value of A^-1 W, from below, and
+/// its unknowns.
+double NullSpaces::least_resisted(std::span<const double> rows, std::vector<double>& y)
+{
+    const int n = size_of(structure_);
+    if (f_ == 0 || n == 0) return 0;
+    std::vector<double> x(static_cast<std::size_t>(n));
+    for (int i = 0; i < n; ++i) x[i] = 1 + 0.1 * (i % 7);   // with a share of any
+    const auto normalise = [&x] {
+        double sum = 0;
+        for (const double v : x) sum += v * v;
+        const double norm = std::sqrt(sum);
+        for (double& v : x) v /= norm;
+        return norm;
+    };
+    double square = 0;
+    normalise();
+    for (int round = 0; round < 2; ++round) {
+        solver_->solve_transposed(x);
+        double* row = x.data();
+        for (int A = 0; A < structure_.n_nodes(); ++A)
+            for (int i = 0; layout_->is_active(A) && i < f_; ++i) *row++ *= rows[A] * rows[A];
+        solver_->solve(x);
+        square = normalise();
+    }
+    y.assign(static_cast<std::size_t>(n / f_ * tables_.n_twists), 0.0);
+    const double* from = x.data();
+    double* to = y.data();
+    for (int A = 0; A < structure_.n_nodes(); ++A) {
+        if (!layout_->is_unknown(A)) continue;
+        to_current(from, A, to);
+        from += f_;
+        to += tables_.n_twists;
+    }
+    return std::sqrt(square);
+}
+
 /// Nothing is scaled: rows and unknowns are in mass-orthonormal coordinates. The 2-norm knows no choice of
 /// units, axes and bases; the 1-norm feels the bases of the free motions (a factor of f^2 at the very most).
 /// The blocks go before vectors come.
@@ -247,109 +291,11 @@ void NullSpaces::measure_condition(SolveReport& report, const std::function<bool
     }
     matrix_ = {};
     z_ = {};
-    const auto map = [this](void (LinearSolver::*apply)(std::span<double>) const) -> LinearMap {
-        return [this, apply](std::span<const double> x, std::span<double> y) {
-            std::copy(x.begin(), x.end(), y.begin());
-            ((*solver_).*apply)(y);
-        };
-    };
-    const ConditionNumbers condition =
-        condition_numbers(whole, map(&LinearSolver::solve), map(&LinearSolver::solve_transposed), goes_on);
+    const ConditionNumbers condition = condition_numbers(whole, applying(&LinearSolver::solve),
+                                                         applying(&LinearSolver::solve_transposed), goes_on);
     report.condition_1 = report.scaled_condition = condition.one;
     report.condition_2 = condition.two;
     report.factor_entries = solver_->report().factor_entries;
-}
-
-/// J y + Y_0 nu = x, Y_1^T y = 0, with the Schur complement Y_1^T J^-1 Y_0.
-class Bodies final : public Elimination {
-public:
-    explicit Bodies(const ModelTables& tables) : tables_(tables)
-    {
-        const auto n = static_cast<std::size_t>(tables.n_twists);
-        work_.assign(n, 0.0);
-        inverse_.resize(tables.bodies.size());
-        columns_.assign(n * static_cast<std::size_t>(tables.rank), 0.0);
-        schur_.resize(tables.rank);
-    }
-
-    void begin(const WindowLayout&, const Nodes& nodes) override
-    {
-        first_ = &nodes.basis(0).q;
-        last_ = &nodes.basis(1).q;
-    }
-    void open(int, int, int) override {}
-    void mass(int body, double factor, const double* H) override
-    {
-        factor_ = factor;
-        if (tables_.bodies[body].dofs == 3) return;
-        Matrix3 h;
-        std::copy(H, H + 9, h.a);
-        inverse_[body] = inverse(h);
-    }
-    void block(int, int, const double*) override {}   // nothing but mass comes to this element
-    void close() override {}
-    bool factorise() override;
-    void solve(std::span<const double> rows, const double* range, double* y) override;
-    bool takes_constraints() const override { return true; }
-    void describe(SolveReport&) const override {}
-    void measure_condition(SolveReport&, const std::function<bool()>&) override {}
-
-private:
-    void invert_bodies(double* y) const;
-
-    const ModelTables& tables_;
-    const OrthogonalBasis *first_ = nullptr, *last_ = nullptr;
-    double factor_ = 1;              // of the mass
-    std::vector<Matrix3> inverse_;   // of H
-    DenseLU schur_;
-    std::vector<double> columns_;   // J^-1 Y_0, rank columns of length n
-    std::vector<double> work_;
-};
-
-/// y <- J^-1 y, body by body.
-void Bodies::invert_bodies(double* y) const
-{
-    const double s = 1 / factor_;
-    for (int body = 0; body < tables_.n_bodies(); ++body) {
-        double* v = y + tables_.bodies[body].first;
-        for (int i = 0; i < 3; ++i) v[i] *= s;
-        if (tables_.bodies[body].dofs == 3) continue;
-        const double* h = inverse_[body].a;
-        const double a = s * v[3], b = s * v[4], c = s * v[5];
-        for (int i = 0; i < 3; ++i) v[3 + i] = h[i] * a + h[3 + i] * b + h[6 + i] * c;
-    }
-}
-
-bool Bodies::factorise()
-{
-    const int k = tables_.rank, n = tables_.n_twists;
-    for (int c = 0; c < k; ++c) {
-        double* column = columns_.data() + c * n;
-        std::fill(column, column + n, 0.0);
-        column[c] = 1;
-        first_->apply(column);
-        invert_bodies(column);
-        std::copy(column, column + n, work_.data());
-        last_->apply_transposed(work_.data());
-        for (int r = 0; r < k; ++r) schur_.row(r)[c] = work_[r];
-    }
-    return factor_ != 0 && schur_.factorise();
-}
-
-void Bodies::solve(std::span<const double> rows, const double* range, double* y)
-{
-    const int k = tables_.rank, n = tables_.n_twists;
-    double* nu = work_.data();
-    std::fill(y, y + k, 0.0);
-    std::copy(rows.begin(), rows.end(), y + k);
-    first_->apply(y);
-    invert_bodies(y);
-    std::copy(y, y + n, nu);
-    last_->apply_transposed(nu);
-    for (int c = 0; range != nullptr && c < k; ++c) nu[c] -= range[c];
-    schur_.solve(nu);
-    for (int c = 0; c < k; ++c)
-        for (int i = 0; i < n; ++i) y[i] -= nu[c] * columns_[c * n + i];
 }
 
 }   // namespace
@@ -358,11 +304,6 @@ std::unique_ptr<Elimination> null_space_elimination(const ModelTables& tables, c
                                                     std::unique_ptr<LinearSolver> solver)
 {
     return std::make_unique<NullSpaces>(tables, layout, std::move(solver));
-}
-
-std::unique_ptr<Elimination> body_elimination(const ModelTables& tables)
-{
-    return std::make_unique<Bodies>(tables);
 }
 
 }   // namespace livens::inline spacetime_internal

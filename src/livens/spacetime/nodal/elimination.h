@@ -25,6 +25,10 @@ public:
     /// Whether solve() can take violations of the constraints in; else they are taken off before. `range`
     /// then holds the part of y across the null space at node 1 (in the basis), or null.
     virtual bool takes_constraints() const { return false; }
+    /// Of the last factors: how far rows of these sizes (of all nodes) may move the unknowns, by the sum of
+    /// their squares, an estimate; and the scaled twists of unknown nodes that move most. 0: they are not
+    /// kept.
+    virtual double least_resisted(std::span<const double> /*rows*/, std::vector<double>& /*y*/) { return 0; }
     virtual void describe(SolveReport& report) const = 0;
     /// Of the tangent that was formed; uses it up.
     virtual void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) = 0;

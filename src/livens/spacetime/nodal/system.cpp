@@ -45,8 +45,7 @@ void NodalSystem::choose_elimination()
 
 std::unique_ptr<Elimination> NodalSystem::on_null_spaces() const
 {
-    return null_space_elimination(tables_, layout_,
-                                  layout_.is_march() ? forward_solver() : whole_solver(SparseBackend::eigen));
+    return null_space_elimination(tables_, layout_, layout_.is_march() ? forward_solver() : chain_solver());
 }
 
 bool NodalSystem::settle()
@@ -140,22 +139,29 @@ bool NodalSystem::pull(bool are_placed)
 void NodalSystem::measure()
 {
     motion_ = impulse_ = 0;
-    for (int e = 0; e < layout_.n_elements(); ++e) {
-        const double inverse = 1 / std::abs(layout_.h(e));
-        for (int B = 1; B <= rule_.degree; ++B) {
-            for (int b = 0; b < tables_.n_bodies(); ++b) {
-                const double* d = nodes_.dX(e, B) + 12 * b;
-                const auto& body = tables_.bodies[b];
-                double u = 0, turn = 0;
-                for (int i = 0; i < 3; ++i) u = std::max(u, std::abs(d[i]));
-                for (int i = 3; i < 12; ++i) turn = std::max(turn, std::abs(d[i]));
-                motion_ = std::max(motion_, std::max(u / tables_.length, turn));
-                impulse_ = std::max(
-                    impulse_,
-                    ((u + body.reach * turn) / body.inverse_root_mass + body.root_inertia * turn) * inverse);
-            }
+    for (int e = 0; e < layout_.n_elements(); ++e) impulse_ = std::max(impulse_, impulse_of(e, motion_));
+}
+
+/// Of an element: mass times motion over h, in scaled rows; `motion` grows to what moves in it, in lengths
+/// and radians.
+double NodalSystem::impulse_of(int e, double& motion) const
+{
+    const double inverse = 1 / std::abs(layout_.h(e));
+    double impulse = 0;
+    for (int B = 1; B <= rule_.degree; ++B) {
+        for (int b = 0; b < tables_.n_bodies(); ++b) {
+            const double* d = nodes_.dX(e, B) + 12 * b;
+            const auto& body = tables_.bodies[b];
+            double u = 0, turn = 0;
+            for (int i = 0; i < 3; ++i) u = std::max(u, std::abs(d[i]));
+            for (int i = 3; i < 12; ++i) turn = std::max(turn, std::abs(d[i]));
+            motion = std::max(motion, std::max(u / tables_.length, turn));
+            impulse = std::max(impulse,
+                               ((u + body.reach * turn) / body.inverse_root_mass + body.root_inertia * turn) *
+                                   inverse);
         }
     }
+    return impulse;
 }
 
 double NodalSystem::size_of(std::span<const double> dx) const
@@ -168,17 +174,50 @@ double NodalSystem::size_of(std::span<const double> dx) const
     return size;
 }
 
+double NodalSystem::largest_k() const
+{
+    double largest = 0;
+    for (const double k : rule_.k) largest = std::max(largest, std::abs(k));
+    return largest;
+}
+
 /// A body may fly many lengths while its turns need their digits all the same.
 double NodalSystem::scale() const { return std::clamp(motion_, 1e-6, 1.0); }
 
 /// The sums over k_AB cancel: their rounding is that of their largest term.
 NewtonProblem::Rows NodalSystem::rows() const
 {
-    double largest_k = 0;
-    for (const double k : rule_.k) largest_k = std::max(largest_k, std::abs(k));
     return {rows_.size(), std::max(impulse_, rows_.terms()),
-            1e-16 * (largest_k * impulse_ + rows_.terms() + tangent_.load_rounding()),
+            1e-16 * (largest_k() * impulse_ + rows_.terms() + tangent_.load_rounding()),
             layout_.n_elements() == 1, correction_};
+}
+
+/// Each row has the rounding of its own terms: a motion that decays keeps its digits.
+double NodalSystem::uncertainty(std::vector<double>& twists)
+{
+    std::vector<double> roundings(static_cast<std::size_t>(layout_.n_nodes()), 0.0);
+    const auto size = static_cast<std::ptrdiff_t>(12 * tables_.bodies.size());
+    double motion = 0;
+    for (int e = 0; e < layout_.n_elements(); ++e) {
+        const double of_element = largest_k() * impulse_of(e, motion) + tangent_.load_rounding(e);
+        for (int A = e * layout_.degree; A <= (e + 1) * layout_.degree; ++A)
+            roundings[A] = std::max(roundings[A], 1e-16 * of_element);
+    }
+    for (int A = 0; A < layout_.n_nodes(); ++A) {
+        if (!layout_.is_active(A)) continue;
+        const double* raw = rows_.raw(A);
+        const auto largest =
+            std::max_element(raw, raw + size, [](double a, double b) { return std::abs(a) < std::abs(b); });
+        roundings[A] += 1e-16 * std::abs(*largest);
+    }
+    const double response = elimination_->least_resisted(roundings, twists);
+    double* twist = twists.data();
+    for (int A = 0; A < layout_.n_nodes() && !twists.empty(); ++A) {
+        if (!layout_.is_unknown(A)) continue;
+        tables_.bodies.to_twist(nodes_.maps(A), twist, twist);
+        twist += tables_.n_twists;
+    }
+    return response;
 }
 
 void NodalSystem::measure_condition(SolveReport& report, const std::function<bool()>& goes_on)

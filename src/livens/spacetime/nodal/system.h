@@ -40,6 +40,10 @@ public:
     /// The bases fit the nodes to rounding: nothing was pulled since they were made.
     bool bases_fit() const { return correction_ < 1e-15; }
 
+    /// How far the rounding of the rows may move the solution at hand, in lengths and radians, by the last
+    /// factors; and the twists of unknown nodes that nothing holds but rounding, or that are held least.
+    double uncertainty(std::vector<double>& twists);
+
     int n_unknowns() const override;
     bool residual() override
     {
@@ -63,6 +67,8 @@ private:
     std::unique_ptr<Elimination> on_null_spaces() const;
     bool pull(bool are_placed);
     void measure();
+    double impulse_of(int e, double& motion) const;
+    double largest_k() const;
 
     const ModelTables& tables_;
     ElementRule rule_;

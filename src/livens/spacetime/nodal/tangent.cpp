@@ -25,7 +25,7 @@ Tangent::Tangent(const ModelTables& tables, const ElementRule& rule) : tables_(t
 void Tangent::form(const WindowLayout& layout, const Nodes& nodes, const NodalRows& rows, TangentSink& sink)
 {
     double H[9] = {};
-    load_rounding_ = 0;
+    load_roundings_.assign(static_cast<std::size_t>(layout.n_elements()), 0.0);
     for (int e = 0; e < layout.n_elements(); ++e) {
         Patience::ask();
         if (!tables_.loads.with_tangent.empty()) evaluate_loads(layout, nodes, rows, e);
@@ -113,7 +113,7 @@ void Tangent::evaluate_loads(const WindowLayout& layout, const Nodes& nodes, con
             tangent = LoadTangent(load.bodies.size());
             load.tangent(arguments, tangent);
             const double size = std::abs(layout.h(e)) * load_terms(tables_, load, arguments, tangent);
-            load_rounding_ = std::max(load_rounding_, size);
+            load_roundings_[e] = std::max(load_roundings_[e], size);
         }
     }
 }

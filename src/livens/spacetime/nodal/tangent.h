@@ -2,6 +2,7 @@
 // The exact tangent of a window, block by block.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "livens/dynamics/rows/tables.h"
@@ -35,7 +36,12 @@ public:
 
     /// Size of what loads make of X and X' in scaled rows, of the last form(): times eps it is what rounding
     /// of X does to the rows, also where large terms of a load have cancelled (a stiff spring at rest).
-    double load_rounding() const { return load_rounding_; }
+    double load_rounding() const
+    {
+        return load_roundings_.empty() ? 0
+                                       : *std::max_element(load_roundings_.begin(), load_roundings_.end());
+    }
+    double load_rounding(int e) const { return load_roundings_.empty() ? 0 : load_roundings_[e]; }
 
 private:
     void evaluate_loads(const WindowLayout& layout, const Nodes& nodes, const NodalRows& rows, int e);
@@ -48,7 +54,7 @@ private:
     std::vector<LoadTangent> load_tangents_;   // of one element: loads with tangents, Gauss point after point
     std::vector<double> blocks_;               // 36 a body
     std::vector<double> total_, X_, V_;        // 12 a body
-    double load_rounding_ = 0;
+    std::vector<double> load_roundings_;       // of the elements
 };
 
 }   // namespace livens::inline spacetime_internal

@@ -261,6 +261,30 @@ void NodalWindow::close_element(int e)
         record_.forget_reactions(mesh_end(e + 1), end_.instant().weak_rows(end_.here()));
 }
 
+Uncertainty NodalWindow::uncertainty()
+{
+    std::vector<double> twists;
+    const double size = system_.uncertainty(twists);
+    double largest = 0, time = 0;
+    int body = -1;
+    const double* twist = twists.data();
+    for (int A = 0; A < layout_.n_nodes() && !twists.empty(); ++A) {
+        if (!layout_.is_unknown(A)) continue;
+        for (int b = 0; b < tables_.n_bodies(); ++b)
+            for (int i = 0; i < tables_.bodies[b].dofs; ++i) {
+                const double v = std::abs(twist[tables_.bodies[b].first + i]) / (i < 3 ? tables_.length : 1);
+                if (!(v > largest)) continue;
+                largest = v;
+                body = b;
+                time = layout_.time(system_.rule(), A);
+            }
+        twist += tables_.n_twists;
+    }
+    if (body < 0) return {};
+    return {size / system_.scale(),
+            "body '" + tables_.model->body_name(body) + "' near t = " + to_text(time, 4) + " s"};
+}
+
 WorstResidual NodalWindow::worst() const
 {
     WorstResidual place{"", layout_.times[0], system_.balances().loads().bad_load(layout_, system_.nodes())};

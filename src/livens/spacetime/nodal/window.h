@@ -31,6 +31,7 @@ public:
     bool start_from(const Guess& guess) override;
     State at(int element_end) const override;
     AcceptedElements close(const AcceptanceCriteria& criteria, SolveReport& report) override;
+    Uncertainty uncertainty() override;
     WorstResidual worst() const override;
     void describe(SolveReport& report) const override;
     Motion take_motion() override { return record_.take(ends_.start); }

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Solutions with the factors of a chain: right-hand sides go through its panels in the order of their
+// elimination, solutions back; transposed, the same panels the same ways.
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "livens/solvers/detail/chain.h"
+
+namespace livens::inline solvers_internal {
+
+namespace {
+
+using Values = std::vector<double>;
+
+void take(const double*& from, Values& to, int n)
+{
+    to.assign(from, from + n);
+    from += n;
+}
+
+}   // namespace
+
+/// One step of refinement.
+void ChainSolver::solve(std::span<double> x, bool is_transposed) const
+{
+    assert(is_regular_ && x.size() == work_.right_side.size());
+    const auto invert = [&](double* v) { is_transposed ? apply_inverse_transposed(v) : apply_inverse(v); };
+    std::copy(x.begin(), x.end(), work_.right_side.begin());
+    invert(x.data());
+    subtract_product(x.data(), work_.right_side.data(), is_transposed);
+    invert(work_.right_side.data());
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += work_.right_side[i];
+}
+
+/// y -= A x or A^T x.
+void ChainSolver::subtract_product(const double* x, double* y, bool is_transposed) const
+{
+    const auto take = [=](int i, int j, double value) {
+        is_transposed ? y[j] -= value * x[i] : y[i] -= value * x[j];
+    };
+    const int behind = first_unknown_.empty() ? 0 : first_unknown_.back();
+    for (int e = 0; e < n_links(); ++e) {
+        const Link& link = links_[static_cast<std::size_t>(e)];
+        const double *value = matrix_.storage(e).data(), *seen = matrix_.border_storage(e).data();
+        const int n = matrix_.n_columns(e), i0 = row(link.first), j0 = unknown(link.first);
+        for (int i = 0; i < matrix_.n_rows(e); ++i) {
+            for (int j = 0; j < n; ++j) take(i0 + i, j0 + j, *value++);
+            for (int j = 0; j < border(); ++j) take(i0 + i, behind + j, *seen++);
+        }
+    }
+    if (n_links() == 0) return;
+    const int first = structure_->n_unknowns.front(), last = structure_->n_unknowns.back();
+    const double* value = matrix_.closing().data();
+    for (int i = 0; i < structure_->n_closing; ++i)
+        for (int j = 0; j < first + last + border(); ++j)
+            take(first_row_.back() + i, j < first ? j : behind - last + j - first, *value++);
+}
+
+/// x, by rows, <- A^-1 x, by unknowns.
+void ChainSolver::apply_inverse(double* x) const
+{
+    if (n_links() == 0) return;
+    work_.front.clear();
+    for (int e = 0; e < n_links(); ++e) {
+        const Link& link = links_[static_cast<std::size_t>(e)];
+        const bool is_last = e + 1 == n_links();
+        const double* from = x + row(link.first);
+        work_.rows.assign(static_cast<std::size_t>(link.inside.n_rows()), 0.0);
+        std::copy_n(from + link.r_near, link.r_own, work_.rows.begin());
+        std::copy_n(from, link.r_near, work_.rows.begin() + link.r_own);
+        // a balance that two elements share is on the right of the later one
+        if (is_last) std::copy_n(from + link.r_near + link.r_own, link.r_far, work_.rows.end() - link.r_far);
+        link.inside.apply(work_.rows.data());
+        std::copy_n(work_.rows.begin(), link.n_own, link.inside_values.begin());
+        work_.front.insert(work_.front.end(), work_.rows.begin() + link.n_own, work_.rows.end());
+        if (e == 0) continue;
+        const auto n = static_cast<std::ptrdiff_t>(link.merged_values.size());
+        link.merged.apply(work_.front.data());
+        std::copy_n(work_.front.begin(), n, link.merged_values.begin());
+        work_.front.erase(work_.front.begin(), work_.front.begin() + n);
+    }
+    work_.front.insert(work_.front.end(), x + first_row_.back(),
+                       x + first_row_.back() + structure_->n_closing);
+    closing_.apply(work_.front.data());
+    closing_.solve(work_.front.data(), nullptr);
+    substitute_back(x);
+}
+
+/// From what the closing rows gave, which stands in work_.front: carried, far, border.
+void ChainSolver::substitute_back(double* x) const
+{
+    const int b = border(), far = links_.back().n_far;
+    const double *carried = work_.front.data(), *of_border = carried + n_carried_ + far;
+    std::copy_n(of_border, b, x + first_unknown_.back());
+    std::copy_n(carried + n_carried_, far, x + unknown(links_.back().last));
+    std::copy_n(carried, n_carried_, x);
+    work_.passed.clear();   // at the far end
+    for (int e = n_links() - 1; e >= 0; --e) {
+        const Link& link = links_[static_cast<std::size_t>(e)];
+        const double* of_far = x + unknown(link.last);
+        Values& merged = link.merged_values;
+        if (e > 0) {
+            work_.others.assign(carried, carried + n_carried_);
+            work_.others.insert(work_.others.end(), of_far, of_far + link.n_far);
+            work_.others.insert(work_.others.end(), of_border, of_border + b);
+            work_.others.insert(work_.others.end(), work_.passed.begin(), work_.passed.end());
+            link.merged.solve(merged.data(), work_.others.data());
+            std::copy_n(merged.begin() + link.p_near, link.n_near, x + unknown(link.first));
+        }
+        const double* of_near = x + unknown(link.first);
+        work_.others.assign(of_near, of_near + link.n_near);
+        work_.others.insert(work_.others.end(), of_far, of_far + link.n_far);
+        work_.others.insert(work_.others.end(), of_border, of_border + b);
+        work_.others.insert(work_.others.end(), merged.begin(), merged.begin() + link.p_near);
+        work_.others.insert(work_.others.end(), work_.passed.begin(), work_.passed.end());
+        link.inside.solve(link.inside_values.data(), work_.others.data());
+        std::copy(link.inside_values.begin(), link.inside_values.end(),
+                  x + unknown(link.first) + link.n_near);
+        work_.passed.assign(merged.begin(), merged.begin() + link.p_near);
+    }
+}
+
+/// Of an element in a transposed solution: its unknowns, and what they leave to carried, near, passed and
+/// border.
+void ChainSolver::eliminate_transposed(const Link& link, const double* x) const
+{
+    const bool is_first = &link == &links_.front();
+    auto& [right_side, rows, front, passed, others, carried, of_border, near] = work_;
+    const double *own = x + unknown(link.first) + link.n_near, *of_far = x + unknown(link.last);
+    Values& nearest = is_first ? carried : near;
+    std::copy_n(own, link.n_own, link.inside_values.begin());
+    others = nearest;
+    others.insert(others.end(), of_far, of_far + link.n_far);
+    others.insert(others.end(), of_border.begin(), of_border.end());
+    others.insert(others.end(), passed.begin(), passed.end());
+    others.resize(others.size() + static_cast<std::size_t>(link.p_far), 0.0);
+    link.inside.solve_transposed(link.inside_values.data(), others.data());
+    const double* from = others.data();
+    Values far, passed_far;
+    take(from, nearest, link.n_near);
+    take(from, far, link.n_far);
+    take(from, of_border, border());
+    take(from, passed, link.p_near);
+    take(from, passed_far, link.p_far);
+    if (!is_first) {
+        std::copy(passed.begin(), passed.end(), link.merged_values.begin());
+        std::copy(near.begin(), near.end(), link.merged_values.begin() + link.p_near);
+        others = carried;
+        for (const Values* v : {&far, &of_border, &passed_far})
+            others.insert(others.end(), v->begin(), v->end());
+        link.merged.solve_transposed(link.merged_values.data(), others.data());
+        from = others.data();
+        take(from, carried, n_carried_);
+        take(from, far, link.n_far);
+        take(from, of_border, border());
+        take(from, passed_far, link.p_far);
+    }
+    near = std::move(far);
+    passed = std::move(passed_far);
+}
+
+/// x, by unknowns, <- A^-T x, by rows: the same panels, transposed, in the same order and back.
+void ChainSolver::apply_inverse_transposed(double* x) const
+{
+    if (n_links() == 0) return;
+    auto& [right_side, rows, front, passed, others, carried, of_border, near] = work_;
+    const int behind = first_unknown_.back(), n_closing = structure_->n_closing;
+    carried.assign(x, x + n_carried_);
+    of_border.assign(x + behind, x + behind + border());
+    near.clear();
+    passed.clear();
+    for (const Link& link : links_) eliminate_transposed(link, x);
+    front = carried;
+    for (const Values* v : {&near, &of_border}) front.insert(front.end(), v->begin(), v->end());
+    closing_.solve_transposed(front.data(), nullptr);
+    closing_.apply_transposed(front.data());
+    std::copy(front.end() - n_closing, front.end(), x + first_row_.back());
+    front.resize(front.size() - static_cast<std::size_t>(n_closing));
+    for (int e = n_links() - 1; e >= 0; --e) {
+        const Link& link = links_[static_cast<std::size_t>(e)];
+        if (e > 0) {
+            front.insert(front.begin(), link.merged_values.begin(), link.merged_values.end());
+            link.merged.apply_transposed(front.data());
+        }
+        const auto n_left = static_cast<std::ptrdiff_t>(link.inside.n_left());
+        rows.assign(link.inside_values.begin(), link.inside_values.end());
+        rows.insert(rows.end(), front.end() - n_left, front.end());
+        front.resize(front.size() - static_cast<std::size_t>(n_left));
+        link.inside.apply_transposed(rows.data());
+        double* to = x + row(link.first);
+        if (e + 1 == n_links())
+            std::copy_n(rows.end() - link.r_far, link.r_far, to + link.r_near + link.r_own);
+        std::copy_n(rows.begin(), link.r_own, to + link.r_near);
+        std::copy_n(rows.begin() + link.r_own, link.r_near, to);
+    }
+}
+
+}   // namespace livens::inline solvers_internal
