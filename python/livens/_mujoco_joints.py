@@ -84,8 +84,10 @@ def _add_along(p: Parts, j: int, table: Table) -> None:
         table["damping"] = damping
     if stiffness > 0 and not is_ball and not is_off(m, "SPRING"):
         table["stiffness"], table["rest"] = stiffness, float(m.qpos_spring[m.jnt_qposadr[j]])
-    if rotor > 0:
-        _add_rotor(p, j, table, rotor)
+    if rotor > 0 and is_ball:
+        p.losses.add(_BALL_ROTOR, name)
+    elif rotor > 0:
+        table["rotor_inertia"] = rotor
     if m.jnt_limited[j] and not is_off(m, "LIMIT"):
         _add_limits(p, j, table)
 
@@ -149,38 +151,6 @@ def point_on(p: Parts, body: str, point: Any) -> tuple[float, ...]:
         return tuple(float(x) for x in point)
     table = next(t for t in p.root["body"] if t["name"] == body)
     return tuple(float(x) for x in axes_of(p, body).T @ (np.array(point) - np.array(table["position"])))
-
-
-def _add_rotor(p: Parts, j: int, table: Table, inertia: float) -> None:
-    """The kinetic energy inertia/2 * rate^2. Where joints have no key for it: of something in the world, off the way,
-    which a rack binds to the coordinate (docs/howto/motors.md)."""
-    m, name = p.m, table["name"]
-    if m.jnt_type[j] == BALL:
-        return p.losses.add(_BALL_ROTOR, name)
-    key = schema().keys(schema().children["joint"], table["type"]).get("rotor_inertia")
-    if key is not None and key["words"]:
-        table["rotor_inertia"] = inertia
-        return None
-    rate = float(p.d.qvel[m.jnt_dofadr[j]])
-    rotor, line = p.names.of(f"rotor of {name}", "body"), p.names.of(f"line of {name}", "joint")
-    if m.jnt_type[j] == HINGE:
-        weight = np.array(p.root["gravity"])
-        across = np.cross(weight, np.eye(3)[np.argmin(np.abs(weight))]) if np.any(weight) else np.array([1.0, 0, 0])
-        across = across / np.linalg.norm(across)
-        body: dict[str, Any] = {"name": rotor, "shape": Table({"point": True}, p.place), "mass": inertia}
-        if rate:
-            body["velocity"] = tuple(float(x) for x in rate * across)
-        p.add("joint", {"name": line, "type": "point_on_line", "between": (WORLD, rotor), "at": (0.0, 0.0, 0.0),
-                        "axis": tuple(float(x) for x in across)})
-    else:
-        body = {"name": rotor, "mass": inertia, "inertia": (inertia,) * 3}
-        if rate:
-            body["angular_velocity"] = (0.0, 0.0, rate)
-        p.add("joint", {"name": line, "type": "revolute", "between": (WORLD, rotor), "at": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)})
-    p.add("body", {**body, "visual": p.dot()})
-    p.add("joint", {"name": p.names.of(f"rack of {name}", "joint"), "type": "rack_and_pinion",
-                    "joints": (name, line) if m.jnt_type[j] == HINGE else (line, name), "radius": 1.0})
-    return None
 
 
 # What closes loops, and who follows whom.

@@ -1447,6 +1447,38 @@ livens_mutant(NAME law_without_bend
               TESTS_OF properties
               MUST_FAIL CoupledJoints.ARopeAndACamPassTheKit)
 
+# Points of rotors with weight: right where all rotors are across gravity.
+livens_mutant(NAME rotors_with_weight
+              FILE multibody/model.cpp
+              OLD [[return body.is_rotor ? Matrix34{} : outer(gravity, body.mass.column(0));]]
+              NEW [[return outer(gravity, body.mass.column(0));]]
+              TESTS_OF unit_io
+              MUST_FAIL RotorInertia.OfASlideIsMassWithoutWeight)
+
+# The lever of a rotor without its root: right for the largest of those that share a point.
+livens_mutant(NAME rotor_lever
+              FILE multibody/rotors.cpp
+              OLD [[std::sqrt(group[k].inertia / mass)]]
+              NEW [[std::sqrt(group[0].inertia / mass)]]
+              TESTS_OF unit_io
+              MUST_FAIL RotorInertia.OfALoopMovesItAsBodiesBoundByRacksDo)
+
+# What the world does to rotors left out of the supplied momentum: right for rotors between bodies.
+livens_mutant(NAME rotors_without_support
+              FILE diagnostics/balance.cpp
+              OLD [[if (!rotors_.empty()) of_rotors_ =]]
+              NEW [[if (rotors_.empty()) of_rotors_ =]]
+              TESTS_OF unit_io
+              MUST_FAIL RotorInertia.KeepsEnergyAndBalances)
+
+# q'' without what velocities do to the coordinate: right at rest.
+livens_mutant(NAME rotor_curvature
+              FILE dynamics/coordinates/generalised_state.cpp
+              OLD [[constraint_curvature(row, {mechanism->placed.t}, placed.X, state.V));]]
+              NEW [[0 * constraint_curvature(row, {mechanism->placed.t}, placed.X, state.V));]]
+              TESTS_OF unit_io
+              MUST_FAIL RotorInertia.IsOneDiagonalTermOfTheMassMatrix)
+
 # Growth of entries from merger to merger is not watched: right wherever exchanges do.
 livens_mutant(NAME chain_without_reflections
               FILE solvers/chain.cpp

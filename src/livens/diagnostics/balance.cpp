@@ -8,6 +8,7 @@
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
+#include "livens/multibody/rotors.h"
 #include "livens/solvers/patience.h"
 
 namespace livens {
@@ -35,7 +36,7 @@ double relative(double drift, double moving, double level)
 class Balancing {
 public:
     Balancing(const Model& model, const Motion& motion, MotionPass& pass)
-        : model_(model), motion_(motion), pass_(pass), potential_(model),
+        : model_(model), motion_(motion), pass_(pass), potential_(model), rotors_(rotors_of(model)),
           X_(static_cast<std::size_t>(motion.n_bodies))
     {}
 
@@ -91,7 +92,9 @@ private:
         piece.energy.push_back(kinetic + potential);
         piece.linear_momentum.push_back(linear_momentum(P));
         piece.angular_momentum.push_back(angular_momentum(X_, P));
+        if (!rotors_.empty()) of_rotors_ = rotor_momentum(model_, rotors_, X_, V);
         if (end_ == 0) {
+            rotors_at_start_ = of_rotors_;
             last_energy_ = kinetic + potential;
             start_ = {potential, last_energy_, piece.linear_momentum[0], piece.angular_momentum[0]};
         }
@@ -106,14 +109,17 @@ private:
     void append_supply(Balance& piece)
     {
         piece.work.push_back(total_.work);
-        piece.linear_impulse.push_back(total_.linear);
-        piece.angular_impulse.push_back(total_.angular);
+        // What turns rotors of joints to the world is theirs, and no momentum of bodies.
+        const Vector3 linear = total_.linear - (of_rotors_.linear - rotors_at_start_.linear),
+                      angular = total_.angular - (of_rotors_.angular - rotors_at_start_.angular);
+        piece.linear_impulse.push_back(linear);
+        piece.angular_impulse.push_back(angular);
         piece.energy_drift.push_back(std::abs(piece.energy.back() - start_.energy - total_.work));
         piece.linear_momentum_drift.push_back(
-            norm(piece.linear_momentum.back() - start_.linear_momentum - total_.linear));
+            norm(piece.linear_momentum.back() - start_.linear_momentum - linear));
         piece.angular_momentum_drift.push_back(
-            norm(piece.angular_momentum.back() - start_.angular_momentum - total_.angular));
-        raise_to(figures_.largest_impulse, norm(total_.linear));
+            norm(piece.angular_momentum.back() - start_.angular_momentum - angular));
+        raise_to(figures_.largest_impulse, norm(linear));
         raise_to(figures_.largest_energy_drift, piece.energy_drift.back());
         raise_to(figures_.largest_linear_momentum_drift, piece.linear_momentum_drift.back());
         raise_to(figures_.largest_angular_momentum_drift, piece.angular_momentum_drift.back());
@@ -135,6 +141,8 @@ private:
     const Motion& motion_;
     MotionPass& pass_;
     PotentialEnergy potential_;
+    std::vector<Rotor> rotors_;
+    RotorMomentum of_rotors_, rotors_at_start_;   // of those on the world
     Supply total_;
     std::vector<Matrix34> X_;
     BalanceFigures figures_;   // references without what is integrated

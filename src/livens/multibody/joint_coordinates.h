@@ -55,6 +55,7 @@ struct NamedCoordinate {
     /// about one axis and slide along one come first, as the legs of a platform before the crosses at their
     /// ends.
     bool is_numbered() const { return name.starts_with("angle_"); }
+    double rotor_inertia = 0;   ///< adds 1/2 of it times the square of the rate to the kinetic energy
 };
 
 /// (X_i n) . (X_j b - X_i a): how far the point b of body j is beyond the point a of body i along the

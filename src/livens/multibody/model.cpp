@@ -162,6 +162,19 @@ void check_drive(const Drive& drive, double scale, const std::string& path)
     }
 }
 
+void check_rotor(double inertia, bool has_events, const std::string& path)
+{
+    if (!(inertia >= 0) || !std::isfinite(inertia))
+        throw InputError({"rotor-inertia", path + ".rotor_inertia",
+                          "the inertia of a rotor must be finite and not negative", to_text(inertia), ">= 0",
+                          "", ""});
+    if (inertia > 0 && has_events)
+        refuse("rotor-inertia", path + ".rotor_inertia",
+               "a joint that acts for a part of the time has no rotor: nothing would turn it when the "
+               "joint has ended",
+               "leave out the times of the joint, or its 'rotor_inertia'");
+}
+
 /// Forms with bodies of their own, which need not be the joint's: gears turn about other joints.
 void check_coordinates(const ConstraintRow& row, const std::vector<Body>& bodies, const std::string& path)
 {
@@ -258,6 +271,10 @@ int Model::add_joint(Joint joint)
     // triads.
     for (NamedCoordinate& one : joint.coordinates)
         if (has_events && !one.apart.forms.empty()) one.coordinate = one.apart;
+    for (const NamedCoordinate& one : joint.coordinates) {
+        check_rotor(one.rotor_inertia, has_events, path);
+        has_rotors_ = has_rotors_ || one.rotor_inertia > 0;
+    }
     first_rows_.push_back(n_rows());
     for (int k = 0; k < static_cast<int>(joint.rows.size()); ++k) rows_.push_back({index, k});
     for (const ConstraintRow& row : joint.rows) {
@@ -350,51 +367,9 @@ State Model::start() const
     return state;
 }
 
-namespace {
-
-std::vector<double> ascending(std::vector<double> all)
+Matrix34 weight(const Body& body, const Vector3& gravity)
 {
-    std::ranges::sort(all);
-    const auto repeated = std::unique(all.begin(), all.end());
-    all.erase(repeated, all.end());
-    return all;
+    return body.is_rotor ? Matrix34{} : outer(gravity, body.mass.column(0));
 }
-
-}   // namespace
-
-std::vector<double> Model::events() const
-{
-    std::vector<double> all;
-    for (const Joint& joint : joints_)
-        for (const double t : {joint.from, joint.until})
-            if (std::isfinite(t)) all.push_back(t);
-    return ascending(std::move(all));
-}
-
-std::vector<double> Model::load_breaks() const
-{
-    std::vector<double> all = events();
-    const auto add = [&all](const std::vector<double>& more) {
-        all.insert(all.end(), more.begin(), more.end());
-    };
-    for (const Load& load : loads_) add(load.breaks);
-    for (const Joint& joint : joints_)
-        for (const ConstraintRow& row : joint.rows)
-            for (const Drive& drive : row.drives) add(drive.factor.breaks());
-    return ascending(std::move(all));
-}
-
-Model frozen(const Model& model, Instant at)
-{
-    Model now = model;
-    now.has_drives_ = false;
-    for (Joint& joint : now.joints_)
-        for (auto* rows : {&joint.rows, &joint.branches})
-            for (ConstraintRow& row : *rows) row = frozen(row, at);
-    now.changed();
-    return now;
-}
-
-Matrix34 weight(const Body& body, const Vector3& gravity) { return outer(gravity, body.mass.column(0)); }
 
 }   // namespace livens

@@ -109,6 +109,8 @@ public:
     bool has_pieces() const { return has_pieces_; }
     /// Whether joints act for a part of the time; these are what solve() divides it by, see acting_at().
     bool has_events() const { return has_events_; }
+    /// Whether coordinates of joints have inertias, see rotors.h.
+    bool has_rotors() const { return has_rotors_; }
     /// When joints begin or end to act, ascending, without repetition.
     std::vector<double> events() const;
     /// All instants where a load jumps or bends, a drive bends, or a joint begins or ends to act, ascending,
@@ -138,7 +140,7 @@ private:
     std::vector<RowPlace> rows_;
     std::vector<int> first_rows_;
     bool has_drives_ = false;
-    bool has_events_ = false, has_pieces_ = false;
+    bool has_events_ = false, has_pieces_ = false, has_rotors_ = false;
     std::uint64_t version_ = 0;
     KnownLength length_;
 

@@ -11,6 +11,7 @@
 #include "livens/spacetime/mixed/bases.h"
 #include "livens/spacetime/mixed/window.h"
 #include "livens/spacetime/phases.h"
+#include "livens/spacetime/rotating.h"
 #include "livens/spacetime/solve.h"
 #include "livens/stepping/stepping.h"
 
@@ -171,6 +172,7 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
 {
     if (model.n_bodies() == 0)
         throw InputError({"no-bodies", "body", "a model needs at least one body", "", "", "", "add a body"});
+    refuse_rotors(model, problem.conditions, method);
     refuse_special_rows(model, method);
     check_conditions(model, problem.conditions, method);
     check_events(model, problem, time, method);

@@ -189,6 +189,18 @@ Joint fitted(Builder& builder, const Section& joint, const std::function<Joint(c
     return std::move(fit.joint);
 }
 
+/// `rotor_inertia` of a joint with one coordinate, or of its table for each of two.
+void read_rotors(const Section& joint, Joint& made)
+{
+    const bool is_one = joint.takes("rotor_inertia");
+    for (NamedCoordinate& one : made.coordinates) {
+        const std::span<const Section> tables =
+            joint.takes(one.name) ? joint.sections(one.name) : std::span<const Section>{};
+        const Section* keys = is_one ? &joint : tables.empty() ? nullptr : &tables.front();
+        if (keys != nullptr && keys->has("rotor_inertia")) one.rotor_inertia = keys->number("rotor_inertia");
+    }
+}
+
 Joint make_joint(Builder& builder, const Section& joint, const std::string& name, int first, int second)
 {
     const Matrix34 &X_first = builder.start_configuration(first),
@@ -203,6 +215,7 @@ Joint make_joint(Builder& builder, const Section& joint, const std::string& name
     };
     Joint made = is_fitted(builder.run()) ? fitted(builder, joint, make, frame) : make(frame);
     read_times(builder, joint, made);
+    read_rotors(joint, made);
     if (joint.has("coordinate")) made.coordinates.front().at_stated = joint.number("coordinate");
     return made;
 }
@@ -314,9 +327,7 @@ Table joint_table()
          Key{"until", types::number,
              "Time of release: velocities continue, the reaction ends. Default: never. lobatto and radau "
              "only.",
-             "s"},
-         Key{"rotor_inertia", types::later,
-             "a point on a line of the world and a rack_and_pinion have this effect: docs/howto/motors.md"}}}
+             "s"}}}
         .with_kinds("type", std::move(all));
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Keys of loads that joints bring themselves: what read_joint_loads() reads.
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "livens/io/scenario/joints/joint_kinds.h"
 
@@ -17,6 +19,11 @@ std::vector<Key> keys_along_angle()
         Key{"stiffness", types::number, "Restoring torque per radian from `rest`.", "N m/rad", "0"}.within(
             not_negative),
         Key{"rest", types::number, "Unloaded angle of the stiffness.", "rad", "0"},
+        Key{"rotor_inertia", types::number,
+            "Inertia along the angle, as of a geared rotor: adds half of it times the square of the rate to "
+            "the kinetic energy. lobatto and radau only.",
+            "kg m^2"}
+            .within(positive),
         Key{"limits", types::interval,
             "Smallest and largest angle; `-inf` or `inf` means no limit. Beyond a limit by d, a torque "
             "limit_stiffness d (1 + limit_damping d') pushes back; it never pulls.",
@@ -38,6 +45,11 @@ std::vector<Key> keys_along_displacement()
             Key{"stiffness", types::number, "Restoring force per metre from `rest`.", "N/m", "0"}.within(
                 not_negative),
             Key{"rest", types::number, "Unloaded displacement of the stiffness.", "m", "0"},
+            Key{"rotor_inertia", types::number,
+                "Inertia along the displacement, as of a geared rotor: adds half of it times the square of "
+                "the rate to the kinetic energy. lobatto and radau only.",
+                "kg"}
+                .within(positive),
             Key{"limits", types::interval,
                 "Smallest and largest displacement; `-inf` or `inf` means no limit. Beyond a limit by d, a "
                 "force limit_stiffness d (1 + limit_damping d') pushes back; it never pulls.",
@@ -68,8 +80,11 @@ std::vector<Key> and_along_displacement(std::vector<Key> keys)
 
 Key table_along_angle(std::string_view word, const std::string& of)
 {
+    std::vector<Key> keys = keys_along_angle();
+    // one of several angles turns no rotor of its own
+    if (word != "angle") std::erase_if(keys, [](const Key& key) { return key.word == "rotor_inertia"; });
     return Key{word, types::table, "Damping, spring and limits along " + of + "."}.holding(
-        {"angle of a joint", "Loads along the angle.", keys_along_angle()});
+        {"angle of a joint", "Loads along the angle.", std::move(keys)});
 }
 std::vector<Key> and_along_both(std::vector<Key> keys)
 {
