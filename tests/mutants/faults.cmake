@@ -1466,8 +1466,8 @@ livens_mutant(NAME rotor_lever
 # What the world does to rotors left out of the supplied momentum: right for rotors between bodies.
 livens_mutant(NAME rotors_without_support
               FILE diagnostics/balance.cpp
-              OLD [[if (!rotors_.empty()) of_rotors_ =]]
-              NEW [[if (rotors_.empty()) of_rotors_ =]]
+              OLD [[if (!rotors_.all.empty()) rotors_.now =]]
+              NEW [[if (rotors_.all.empty()) rotors_.now =]]
               TESTS_OF unit_io
               MUST_FAIL RotorInertia.KeepsEnergyAndBalances)
 

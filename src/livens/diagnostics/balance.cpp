@@ -32,11 +32,22 @@ double relative(double drift, double moving, double level)
     return drift <= rounding * level ? 0 : drift / std::max(moving, rounding * level);
 }
 
+struct StartOfBalance {
+    double potential = 0, energy = 0;
+    Vector3 linear_momentum{}, angular_momentum{};
+};
+
+/// Momenta of rotors on the world, which holds them.
+struct RotorSupport {
+    std::vector<Rotor> all;
+    RotorMomentum now, at_start;
+};
+
 /// Goes from element end to element end.
 class Balancing {
 public:
     Balancing(const Model& model, const Motion& motion, MotionPass& pass)
-        : model_(model), motion_(motion), pass_(pass), potential_(model), rotors_(rotors_of(model)),
+        : model_(model), motion_(motion), pass_(pass), potential_(model), rotors_{rotors_of(model), {}, {}},
           X_(static_cast<std::size_t>(motion.n_bodies))
     {}
 
@@ -92,9 +103,9 @@ private:
         piece.energy.push_back(kinetic + potential);
         piece.linear_momentum.push_back(linear_momentum(P));
         piece.angular_momentum.push_back(angular_momentum(X_, P));
-        if (!rotors_.empty()) of_rotors_ = rotor_momentum(model_, rotors_, X_, V);
+        if (!rotors_.all.empty()) rotors_.now = rotor_momentum(model_, rotors_.all, X_, V);
         if (end_ == 0) {
-            rotors_at_start_ = of_rotors_;
+            rotors_.at_start = rotors_.now;
             last_energy_ = kinetic + potential;
             start_ = {potential, last_energy_, piece.linear_momentum[0], piece.angular_momentum[0]};
         }
@@ -110,8 +121,8 @@ private:
     {
         piece.work.push_back(total_.work);
         // What turns rotors of joints to the world is theirs, and no momentum of bodies.
-        const Vector3 linear = total_.linear - (of_rotors_.linear - rotors_at_start_.linear),
-                      angular = total_.angular - (of_rotors_.angular - rotors_at_start_.angular);
+        const Vector3 linear = total_.linear - (rotors_.now.linear - rotors_.at_start.linear),
+                      angular = total_.angular - (rotors_.now.angular - rotors_.at_start.angular);
         piece.linear_impulse.push_back(linear);
         piece.angular_impulse.push_back(angular);
         piece.energy_drift.push_back(std::abs(piece.energy.back() - start_.energy - total_.work));
@@ -141,15 +152,11 @@ private:
     const Motion& motion_;
     MotionPass& pass_;
     PotentialEnergy potential_;
-    std::vector<Rotor> rotors_;
-    RotorMomentum of_rotors_, rotors_at_start_;   // of those on the world
+    RotorSupport rotors_;
     Supply total_;
     std::vector<Matrix34> X_;
     BalanceFigures figures_;   // references without what is integrated
-    struct {
-        double potential, energy;
-        Vector3 linear_momentum, angular_momentum;
-    } start_{};
+    StartOfBalance start_;
     double last_energy_ = 0, last_work_ = 0, risen_ = 0;   // at the end before
     int end_ = 0;
 };

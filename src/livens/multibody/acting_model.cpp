@@ -46,7 +46,7 @@ std::vector<double> Model::load_breaks() const
 Model frozen(const Model& model, Instant at)
 {
     Model now = model;
-    now.has_drives_ = false;
+    now.has_.drives = false;
     for (Joint& joint : now.joints_)
         for (auto* rows : {&joint.rows, &joint.branches})
             for (ConstraintRow& row : *rows) row = frozen(row, at);

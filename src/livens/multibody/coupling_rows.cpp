@@ -40,19 +40,18 @@ double common_measure(const std::vector<double>& numbers)
     return measure * 10000.5 >= largest ? measure : 0;   // by half a part for rounding
 }
 
-Value angle_at(double factor, double c, double s)
+Value times(double factor, Value value)
 {
-    const double square = c * c + s * s, quartic = square * square;
-    Value angle;
-    angle.value = factor * arc_tangent(s, c);
-    // Of atan2(s, c) off the unit circle as well: between the nodes of an element s^2 + c^2 is not one.
-    angle.gradient[0] = factor * (-s / square);
-    angle.gradient[1] = factor * (c / square);
-    angle.hessian[0][0] = factor * (2 * c * s / quartic);
-    angle.hessian[0][1] = angle.hessian[1][0] = factor * ((s * s - c * c) / quartic);
-    angle.hessian[1][1] = factor * (-2 * c * s / quartic);
-    return angle;
+    value.value *= factor;
+    for (std::size_t i = 0; i < value.gradient.size(); ++i) {
+        value.gradient[i] *= factor;
+        for (double& one : value.hessian[i]) one *= factor;
+    }
+    return value;
 }
+
+/// Of atan2(s, c).
+Value angle_of(double c, double s) { return coordinate_at(CoordinateKind::angle, {c, s}); }
 
 /// How far an angle turns by a step, by cross and inner product: no difference of two angles, so no cut and
 /// no cancellation.
@@ -64,11 +63,11 @@ double turn_by(const Point& q, const Point& step)
 /// Angles take the shorter way round.
 SmoothFunction multiple_of_angle(double factor)
 {
-    return {[factor](const Point& q) { return angle_at(factor, q[0], q[1]); },
+    return {[factor](const Point& q) { return times(factor, angle_of(q[0], q[1])); },
             [factor](const Point& q, std::span<const Point> steps, std::span<Value> out) {
                 for (std::size_t i = 0; i < steps.size(); ++i) {
                     const double c = q[0] + steps[i][0], s = q[1] + steps[i][1];
-                    out[i] = angle_at(factor, c, s);
+                    out[i] = times(factor, angle_of(c, s));
                     out[i].value = factor * turn_by(q, steps[i]);
                 }
             },
@@ -92,15 +91,7 @@ SmoothFunction multiple(double factor)
 /// What does not count turns, times a number.
 SmoothFunction multiple_of_function(CoordinateKind kind, std::size_t n, double factor)
 {
-    const auto at = [kind, factor](const Point& q) {
-        Value value = coordinate_at(kind, q);
-        value.value *= factor;
-        for (std::size_t i = 0; i < q.size(); ++i) {
-            value.gradient[i] *= factor;
-            for (double& one : value.hessian[i]) one *= factor;
-        }
-        return value;
-    };
+    const auto at = [kind, factor](const Point& q) { return times(factor, coordinate_at(kind, q)); };
     return {at,
             [at](const Point& from, std::span<const Point> steps, std::span<Value> out) {
                 const double before = at(from).value;
@@ -164,7 +155,7 @@ struct ShiftedLaw {
             out.hessian[0][0] = -f.second;
             return out;
         }
-        const Value angle = angle_at(1, q[0], q[1]);
+        const Value angle = angle_of(q[0], q[1]);
         for (std::size_t k = 0; k < 2; ++k) {
             out.gradient[k] = -f.first * angle.gradient[k];
             for (std::size_t l = 0; l < 2; ++l)

@@ -14,11 +14,19 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
+/// Lines that joints follow, to be drawn.
+struct JointLine {
+    /// Of a slot: points of its whole curve in coordinates of `first`, in order.
+    std::vector<Vector3> path{};
+    /// Of a rope: the points that it runs over.
+    std::vector<BodyPoint> over{};
+};
+
 /// A joint between `first` (a body or the world) and `second` (a body). A new kind of joint is a new function
 /// that fills in rows; nothing else in livens asks for the kind.
 ///
 /// Reactions are what the joint exerts on `second`, at `point_second`, in world axes.
-struct Joint {
+struct Joint : JointLine {
     std::string name;
     std::string type;   ///< "revolute", ...; for messages and files
     int first = world;
@@ -41,10 +49,6 @@ struct Joint {
     /// It acts from one instant until another (s), which are events of the motion.
     double from = -std::numeric_limits<double>::infinity();
     double until = std::numeric_limits<double>::infinity();
-    /// Of a slot: points of its whole curve in coordinates of `first`, in order, to be drawn.
-    std::vector<Vector3> path{};
-    /// Of a rope: the points that it runs over.
-    std::vector<BodyPoint> over{};
 
     bool acts_at(double t) const { return from <= t && t < until; }
 };

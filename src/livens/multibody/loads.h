@@ -158,8 +158,16 @@ struct ProductSlopes {
     PerBody<Matrix34> by_X, by_V;
 };
 
+/// Where a load acts along, for people.
+struct LoadLine {
+    /// Where it acts on its two bodies, in their coordinates; empty: not along a line.
+    std::vector<Vector3> points{};
+    /// Of a rope: the points that it runs over.
+    std::vector<BodyPoint> over{};
+};
+
 /// A load is data and functions; a new one is a new maker.
-struct Load : LoadSmoothness, LoadEnergy {
+struct Load : LoadSmoothness, LoadEnergy, LoadLine {
     std::string name;
     std::string type;
     /// Those that it acts on, two of them or more, the second the world for a load on one body; then those
@@ -184,10 +192,6 @@ struct Load : LoadSmoothness, LoadEnergy {
     std::function<std::vector<ProductSlopes>(const LoadArguments&)> products = nullptr;
     /// For sensors and people.
     std::vector<LoadReading> readings;
-    /// For people: where it acts on its two bodies, in their coordinates; empty: not along a line.
-    std::vector<Vector3> points{};
-    /// Of a rope: the points that it runs over.
-    std::vector<BodyPoint> over{};
 };
 
 enum class Frame { inertial, body_fixed };

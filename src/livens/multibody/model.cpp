@@ -266,20 +266,20 @@ int Model::add_joint(Joint joint)
 
     const int index = static_cast<int>(joints_.size());
     const bool has_events = std::isfinite(joint.from) || std::isfinite(joint.until);
-    has_events_ = has_events_ || has_events;
+    has_.events = has_.events || has_events;
     // A joint that does not always act leaves its axes apart; then the angle is that of the turn between both
     // triads.
     for (NamedCoordinate& one : joint.coordinates)
         if (has_events && !one.apart.forms.empty()) one.coordinate = one.apart;
     for (const NamedCoordinate& one : joint.coordinates) {
         check_rotor(one.rotor_inertia, has_events, path);
-        has_rotors_ = has_rotors_ || one.rotor_inertia > 0;
+        has_.rotors = has_.rotors || one.rotor_inertia > 0;
     }
     first_rows_.push_back(n_rows());
     for (int k = 0; k < static_cast<int>(joint.rows.size()); ++k) rows_.push_back({index, k});
     for (const ConstraintRow& row : joint.rows) {
-        has_drives_ = has_drives_ || !row.drives.empty();
-        has_pieces_ = has_pieces_ || row.guard;
+        has_.drives = has_.drives || !row.drives.empty();
+        has_.pieces = has_.pieces || row.guard;
     }
     joints_.push_back(std::move(joint));
     changed();
@@ -307,7 +307,7 @@ int Model::add_load(Load load)
             refuse("load-needs-directors", path,
                    "the load needs the orientation of '" + bodies_[load.bodies[b]].name + "', a point mass",
                    "a point mass takes forces in world axes at its own point");
-    has_pieces_ = has_pieces_ || !load.guards.empty() || load.bends_at_centre;
+    has_.pieces = has_.pieces || !load.guards.empty() || load.bends_at_centre;
     loads_.push_back(std::move(load));
     changed();
     return static_cast<int>(loads_.size()) - 1;
