@@ -161,6 +161,15 @@ bool Panel::reflect()
     return true;
 }
 
+void Panel::reflect_vector(int k, double* x) const
+{
+    double sum = x[k];
+    for (int i = k + 1; i < n_rows_; ++i) sum += row(i)[k] * x[i];
+    sum *= beta_[k];
+    x[k] -= sum;
+    for (int i = k + 1; i < n_rows_; ++i) x[i] -= row(i)[k] * sum;
+}
+
 void Panel::apply(double* x) const
 {
     for (int k = 0; k < n_pivots_; ++k) {
@@ -168,11 +177,7 @@ void Panel::apply(double* x) const
             std::swap(x[k], x[exchanged_[k]]);
             continue;
         }
-        double sum = x[k];
-        for (int i = k + 1; i < n_rows_; ++i) sum += row(i)[k] * x[i];
-        sum *= beta_[k];
-        x[k] -= sum;
-        for (int i = k + 1; i < n_rows_; ++i) x[i] -= row(i)[k] * sum;
+        reflect_vector(k, x);
     }
     if (!beta_.empty()) return;
     for (int i = 1; i < n_rows_; ++i) {
@@ -185,13 +190,8 @@ void Panel::apply(double* x) const
 
 void Panel::apply_transposed(double* x) const
 {
-    for (int k = n_pivots_ - 1; k >= 0 && !beta_.empty(); --k) {   // a reflection is its own inverse
-        double sum = x[k];
-        for (int i = k + 1; i < n_rows_; ++i) sum += row(i)[k] * x[i];
-        sum *= beta_[k];
-        x[k] -= sum;
-        for (int i = k + 1; i < n_rows_; ++i) x[i] -= row(i)[k] * sum;
-    }
+    for (int k = n_pivots_ - 1; k >= 0 && !beta_.empty(); --k)   // a reflection is its own inverse
+        reflect_vector(k, x);
     if (!beta_.empty()) return;
     for (int i = n_rows_ - 1; i > 0; --i)
         for (int k = 0; k < std::min(i, n_pivots_); ++k) x[k] -= row(i)[k] * x[i];

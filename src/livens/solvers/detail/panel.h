@@ -48,6 +48,7 @@ private:
     void exchange(int i, int j);
     void subtract(int i, int k, int from);
     bool reflect_column(int k);
+    void reflect_vector(int k, double* x) const;
 
     int n_rows_ = 0, n_pivots_ = 0, width_ = 0;
     int failed_ = -1;
