@@ -4,7 +4,7 @@ import { png_of } from "./files";
 import { Gif, Palette } from "./gif";
 import { sketch } from "./sketch";
 import { Studio, type Look, type Screen } from "./studio";
-import { webm_of, type Chunk } from "./webm";
+import { webm_of, type Chunk, type Colours } from "./webm";
 
 /** Instants of a moving picture: from, to [s] of the motion, seconds of motion in one of the picture, pictures a second. */
 export interface Course {
@@ -90,9 +90,11 @@ async function video(
     config = await codec_of(width, height, rate),
     studio = new Studio(screen, look),
     chunks: Chunk[] = [];
-  let fault: Error | null = null;
+  let fault: Error | null = null,
+    colours: Colours = {};
   const encoder = new VideoEncoder({
-    output: (chunk) => {
+    output: (chunk, told) => {
+      colours = told?.decoderConfig?.colorSpace ?? colours;
       const data = new Uint8Array(chunk.byteLength);
       chunk.copyTo(data);
       chunks.push({ data, timestamp: chunk.timestamp, is_key: chunk.type === "key" });
@@ -136,6 +138,7 @@ async function video(
     height,
     rate,
     instants.length / rate,
+    colours,
   );
 }
 

@@ -8,6 +8,10 @@ export interface Chunk {
   is_key: boolean;
 }
 type Bytes = Uint8Array<ArrayBuffer>;
+export type Colours = NonNullable<VideoDecoderConfig["colorSpace"]>;
+
+// Numbers of what a browser names [ITU-T H.273]; 2 is "unspecified".
+const numbers: Record<string, number> = { bt709: 1, bt470bg: 5, smpte170m: 6, "iec61966-2-1": 13, rgb: 0 };
 
 const longest_cluster = 30_000; // ms: timestamps in a cluster have 16 bits
 
@@ -81,6 +85,18 @@ function clusters_of(chunks: Chunk[]): { time: number; bytes: Bytes }[] {
   });
 }
 
+/** How numbers become colours; players guess it, each in its way, where it is not told. */
+function colours_of({ matrix, transfer, primaries, fullRange }: Colours): Bytes {
+  const number = (name: string | null | undefined) => numbers[name ?? ""] ?? 2;
+  return element(
+    0x55b0,
+    unsigned(0x55b1, number(matrix)),
+    unsigned(0x55b9, fullRange ? 2 : 1),
+    unsigned(0x55ba, number(transfer)),
+    unsigned(0x55bb, number(primaries)),
+  );
+}
+
 /** `seconds`: how long all of it lasts; `rate`: pictures a second. */
 export function webm_of(
   chunks: Chunk[],
@@ -89,6 +105,7 @@ export function webm_of(
   height: number,
   rate: number,
   seconds: number,
+  colours: Colours,
 ): Blob {
   const info = element(
     0x1549a966,
@@ -105,7 +122,7 @@ export function webm_of(
     unsigned(0x83, 1),
     text(0x86, codec),
     unsigned(0x23e383, Math.round(1e9 / rate)),
-    element(0xe0, unsigned(0xb0, width), unsigned(0xba, height)),
+    element(0xe0, unsigned(0xb0, width), unsigned(0xba, height), colours_of(colours)),
   );
   const tracks = element(0x1654ae6b, track),
     clusters = clusters_of(chunks);
