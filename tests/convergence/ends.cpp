@@ -403,6 +403,33 @@ TEST(LobattoEnds, HaveOrder2P)
     }
 }
 
+/// Where places are given, two solutions agree: errors there are those of velocities, over the element
+/// beside.
+TEST(LobattoEnds, ErrorsOfOneElementAreToldWherePlacesAreGiven)
+{
+    for (const Forward& run :
+         {forward("box", free_box(), 0.5, 1, 40), forward("hinged brick", hinged_brick(), 0.2, 0.4, 20)})
+        for (const int n : {1, 2}) {
+            SolveOptions options;
+            options.estimate = SolveOptions::Estimate::second;
+            const Solution s = solve(run.model,
+                                     {stated(run, false, Known::positions), Known::positions,
+                                      stated(run, true, Known::positions), Known::positions},
+                                     make_time_mesh(0, run.end, n), lobatto(4), options);
+            ASSERT_TRUE(s.report.converged()) << run.name << ": " << s.report.message;
+            double error = 0;
+            for (const int end : {0, n}) {
+                const State is = s.motion.at_end(end), was = end == 0 ? run.start : run.finish;
+                const BodyGap gap = gap_between(is, was, run.model.bodies()[0], 0, run.model.length());
+                error = std::max(
+                    {error, gap.velocity * run.end / n / run.model.length(), gap.rate * run.end / n});
+            }
+            EXPECT_GT(error, 1e-9) << run.name;   // else it shows nothing
+            EXPECT_GT(s.estimate.largest, 0.5 * error) << run.name << " " << n;
+            EXPECT_LT(s.estimate.largest, 20 * error) << run.name << " " << n;
+        }
+}
+
 // What does not determine a motion.
 
 /// Why a problem is not solved: what is thrown, or the report's message; empty if it is solved.

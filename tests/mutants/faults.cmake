@@ -1431,6 +1431,14 @@ livens_mutant(NAME chain_forgets_the_border
               TESTS_OF unit_solvers
               MUST_FAIL ChainSolver.AgreesWithTheWholeMatrixForAllSizesAndBorders)
 
+# Where places are given two solutions agree, which is taken for a motion without an error.
+livens_mutant(NAME given_places_have_no_error
+              FILE diagnostics/estimate.cpp
+              OLD [[is_given ? motion_.mesh.length(std::max(end - 1, 0)) : 0]]
+              NEW [[is_given ? 0 * motion_.mesh.length(std::max(end - 1, 0)) : 0]]
+              TESTS_OF convergence
+              MUST_FAIL LobattoEnds.ErrorsOfOneElementAreToldWherePlacesAreGiven)
+
 # What rounding may move is not compared: motions that the conditions leave free are told as known.
 livens_mutant(NAME free_motions_are_taken
               FILE spacetime/solve_mesh.cpp

@@ -109,11 +109,13 @@ void ErrorMeter::fill(int end)
 
 void ErrorMeter::compare_states(int end, const State& a, const State& b)
 {
+    const bool is_given = std::ranges::find(given_places_, end) != given_places_.end();
+    const double time = is_given ? motion_.mesh.length(std::max(end - 1, 0)) : 0;
     for (int k = 0; k < estimate_.n_bodies; ++k) {
         const BodyGap gap = gap_between(a, b, model_.bodies()[k], k, estimate_.length);
         const auto at = static_cast<std::size_t>(end * estimate_.n_bodies + k);
-        estimate_.position[at] = gap.position;
-        estimate_.orientation[at] = gap.orientation;
+        estimate_.position[at] = std::max(gap.position, gap.velocity * time / estimate_.length);
+        estimate_.orientation[at] = std::max(gap.orientation, gap.rate * time);
         estimate_.velocity[at] = gap.velocity;
     }
 }
@@ -195,8 +197,8 @@ BodyGap gap_between(const State& a, const State& b, const Body& body, int index,
     const Vector4 centre = point(mass_properties(body.mass).center_of_mass);
     // the chord of a turn by phi is 2 sqrt(2) sin(phi / 2)
     const double chord = norm(directors(dX)) / (2 * std::sqrt(2.0));
-    return {norm(dX * centre) / length, chord > 1 ? std::numbers::pi : 2 * arc_sine(chord),
-            norm(dV * centre)};
+    return {norm(dX * centre) / length, chord > 1 ? std::numbers::pi : 2 * arc_sine(chord), norm(dV * centre),
+            norm(directors(dV)) / std::sqrt(2.0)};
 }
 
 double gap_between(const JointSample& a, const JointSample& b, double length)

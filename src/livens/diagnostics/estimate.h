@@ -16,6 +16,7 @@ struct BodyGap {
     double position = 0;      ///< between the centres of mass, in lengths of the model
     double orientation = 0;   ///< rad; 0 for point masses
     double velocity = 0;      ///< m/s, of the centre of mass
+    double rate = 0;          ///< rad/s, of the directors
 };
 BodyGap gap_between(const State& a, const State& b, const Body& body, int index, double length);
 
@@ -88,6 +89,10 @@ public:
     /// References must outlive the meter.
     ErrorMeter(const Model& model, const Motion& motion);
 
+    /// The place at this element end is given, so that two solutions have the same one there. It counts where
+    /// their velocities at it would be apart by, after the element beside it.
+    void has_given_place(int end) { given_places_.push_back(end); }
+
     /// At the element ends first..last of the motion, of which `finer` has these two. Where it has one of its
     /// own instead, since a law bends there, the larger error of the two beside it stands.
     void compare(const Motion& finer, int first, int last);
@@ -113,6 +118,7 @@ private:
     };
     std::vector<Kicks> shifts_, turns_;
     double largest_kick_ = 0;
+    std::vector<int> given_places_;   // element ends
 };
 
 }   // namespace gnu::visibility("default")]]livens

@@ -78,6 +78,7 @@ TEST(Estimate, GapsAreThoseOfCentresAndTurns)
     EXPECT_NEAR(gap.orientation, angle, 1e-12);
     EXPECT_NEAR(gap.position, 2 * 0.5 * std::sin(angle / 2) / 2, 1e-15);   // of the centre, by the length
     EXPECT_NEAR(gap.velocity, std::abs(3 - 4 * 0.5 * std::cos(angle)), 1e-12);
+    EXPECT_NEAR(gap.rate, 4, 1e-12);
 
     JointSample one, other;
     one.left.force = one.right.force = {3, 0, 0};

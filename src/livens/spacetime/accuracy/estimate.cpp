@@ -63,6 +63,9 @@ ReferenceSolution::ReferenceSolution(const Model& model, const Problem& problem,
       meter_(model, first), is_backwards_(problem.conditions.at_end == Known::state),
       is_lobatto_(std::holds_alternative<Lobatto>(method)), at_(is_backwards_ ? first.n_elements() : 0)
 {
+    const auto is_place = [](Known known) { return known == Known::positions; };
+    if (is_place(problem.conditions.at_start)) meter_.has_given_place(0);
+    if (is_place(problem.conditions.at_end)) meter_.has_given_place(first.n_elements());
     problem_.guess = [&first](double t) { return first.at(t); };
     problem_.near = &first;
     options_.condition = options_.judge = problem_.is_determination_asked = false;
