@@ -105,6 +105,8 @@ def written(key):
             types.append(WRITTEN[form])
     if key["name"] == "shape":
         types.append("Shape")
+    if key["name"] == "over":
+        types = ["Sequence[End | Mapping[str, Any]]"]
     if key["name"] == "visual":
         types = ["Shape", "Mapping[str, Any]", "Sequence[Shape | Mapping[str, Any]]"]
     return " | ".join(dict.fromkeys(types))

@@ -110,15 +110,22 @@ std::string springs_of(const Model& model, const State& start)
         const Vector3 a = place(bodies[0], points[0]), b = place(bodies[1], points[1]);
         return fmt::format("{:.4g} m, from {} to {}", norm(b - a), place_in_words(a), place_in_words(b));
     };
+    const auto rope = [&](const std::vector<BodyPoint>& over) {
+        return fmt::format("{:.4g} m, over {} points", rope_length(over, start.X), over.size());
+    };
     std::vector<std::string> lines;
     for (const Joint& joint : model.joints())
-        if (joint.type == "rod")
+        if (!joint.over.empty())
+            lines.push_back(plain(joint.name) + ": " + rope(joint.over));
+        else if (joint.type == "rod")
             lines.push_back(plain(joint.name) + ": " +
                             line({joint.first, joint.second}, {joint.point_first, joint.point_second}));
     for (const Load& load : model.loads()) {
         if (load.sets_length_scale) continue;   // between places that are told already
         const std::string force = force_of(load, start);
-        if (load.points.size() == 2)
+        if (!load.over.empty())
+            lines.push_back(plain(load.name) + ": " + rope(load.over) + (force.empty() ? "" : ", ") + force);
+        else if (load.points.size() == 2)
             lines.push_back(plain(load.name) + ": " + line(load.bodies, load.points) +
                             (force.empty() ? "" : ", ") + force);
         else if (!force.empty())

@@ -187,6 +187,8 @@ def default_name(kind: str, table: Mapping[str, Any]) -> str:
     for key in ("between", "joints"):
         if isinstance(table.get(key), tuple) and len(table[key]) == 2:
             return f"{word} {table[key][0]}-{table[key][1]}"
+    if isinstance(table.get("over"), (list, tuple)):
+        return f"{word} {'-'.join(str(at.get('body', at.get('point'))) for at in table['over'])}"
     if isinstance(table.get("terms"), Mapping):
         return f"{word} {'-'.join(table['terms'])}"
     for key in ("body", "joint"):

@@ -44,7 +44,7 @@ def to_xarray(series: Series) -> xarray.Dataset:
             "on the second body, about the joint point")
     coordinates: dict[str, Any] = {"body": bodies, "xyz": _XYZ, "quaternion_part": ["w", "x", "y", "z"],
                                    "director": ["d1", "d2", "d3"]}
-    for kind in ("angle", "displacement"):
+    for kind in ("angle", "displacement", "angle_1", "angle_2", "angle_3"):
         having = [name for name in joints if kind in series.joints[name].coordinates]
         if having:
             coordinates[kind] = having

@@ -396,12 +396,13 @@ class Model(Tree):
     def coordinates(self) -> Coordinates:
         """Independent coordinates that tell where all bodies are: their order is that of arrays for :meth:`at`.
 
-        Taken are coordinates of joints in the order of the model (in a loop the first ones that are independent), and of
-        bodies that these leave free the position and quaternion. Drives do not count.
+        Taken are coordinates of joints in the order of the model, those of universal and ball joints last (in a loop the
+        first ones that are independent), and of bodies that these leave free the position and quaternion: of a body on a
+        ball joint without ``angles`` the quaternion. Drives do not count.
 
         Raises:
-            InputError: ``coordinates-missing`` where something can move that no coordinate tells, such as the two turns of a
-                universal joint; for errors in the model.
+            InputError: ``coordinates-missing`` where something can move that no coordinate tells, such as the turns that a
+                joint of constant velocity leaves; for errors in the model.
         """
         return self._coordinates((), None)
 

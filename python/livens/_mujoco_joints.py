@@ -21,7 +21,8 @@ _LIMITS = lost("joint", "joint limits are not kept", "limits=\"stop\" keeps them
 _LIMITS_AT_START = lost("joint", "limits are not kept at or beyond which a joint begins", "state by at= where the joint begins")
 _LIMITS_ORDER = lost("joint", "limits are not kept whose lower is not below the upper")
 _SOFT_LIMITS = Loss("import-mended", "joint", "joints", "limits are springs here whose stiffness follows from the bodies (solref and solimp are not kept)")
-_BALL_LIMITS = lost("joint", "limits of ball joints are not kept")
+_BALL_LIMITS = lost("joint", "limits of ball joints beyond 170 degrees are not kept")
+_FARTHEST = math.radians(170)   # to which ball joints are limited
 _BALL_ROTOR = lost("joint", "armature of ball and free joints is not kept")
 _FRICTION = lost("joint", "dry friction is not kept", "docs/howto/friction.md has it as an expression")
 _BENT = lost("joint", "springs and dampers that are not linear, or yield, are not kept")
@@ -83,18 +84,20 @@ def _add_along(p: Parts, j: int, table: Table) -> None:
         table["damping"] = damping
     if stiffness > 0 and not is_ball and not is_off(m, "SPRING"):
         table["stiffness"], table["rest"] = stiffness, float(m.qpos_spring[m.jnt_qposadr[j]])
-    if rotor > 0:
-        _add_rotor(p, j, table, rotor)
+    if rotor > 0 and is_ball:
+        p.losses.add(_BALL_ROTOR, name)
+    elif rotor > 0:
+        table["rotor_inertia"] = rotor
     if m.jnt_limited[j] and not is_off(m, "LIMIT"):
         _add_limits(p, j, table)
 
 
 def _add_limits(p: Parts, j: int, table: Table) -> None:
     name = table["name"]
-    if p.m.jnt_type[j] == BALL:
-        return p.losses.add(_BALL_LIMITS, name)
     if not p.stops:
         return p.losses.add(_LIMITS, name)
+    if p.m.jnt_type[j] == BALL:
+        return _add_ball_limit(p, j, table)
     low, high = (float(x) for x in p.m.jnt_range[j])
     if not low < high:
         return p.losses.add(_LIMITS_ORDER, name)
@@ -107,36 +110,47 @@ def _add_limits(p: Parts, j: int, table: Table) -> None:
         table["limits"] = kept
 
 
-def _add_rotor(p: Parts, j: int, table: Table, inertia: float) -> None:
-    """The kinetic energy inertia/2 * rate^2. Where joints have no key for it: of something in the world, off the way,
-    which a rack binds to the coordinate (docs/howto/motors.md)."""
-    m, name = p.m, table["name"]
-    if m.jnt_type[j] == BALL:
-        return p.losses.add(_BALL_ROTOR, name)
-    key = schema().keys(schema().children["joint"], table["type"]).get("rotor_inertia")
-    if key is not None and key["words"]:
-        table["rotor_inertia"] = inertia
-        return None
-    rate = float(p.d.qvel[m.jnt_dofadr[j]])
-    rotor, line = p.names.of(f"rotor of {name}", "body"), p.names.of(f"line of {name}", "joint")
-    if m.jnt_type[j] == HINGE:
-        weight = np.array(p.root["gravity"])
-        across = np.cross(weight, np.eye(3)[np.argmin(np.abs(weight))]) if np.any(weight) else np.array([1.0, 0, 0])
-        across = across / np.linalg.norm(across)
-        body: dict[str, Any] = {"name": rotor, "shape": Table({"point": True}, p.place), "mass": inertia}
-        if rate:
-            body["velocity"] = tuple(float(x) for x in rate * across)
-        p.add("joint", {"name": line, "type": "point_on_line", "between": (WORLD, rotor), "at": (0.0, 0.0, 0.0),
-                        "axis": tuple(float(x) for x in across)})
-    else:
-        body = {"name": rotor, "mass": inertia, "inertia": (inertia,) * 3}
-        if rate:
-            body["angular_velocity"] = (0.0, 0.0, rate)
-        p.add("joint", {"name": line, "type": "revolute", "between": (WORLD, rotor), "at": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)})
-    p.add("body", {**body, "visual": p.dot()})
-    p.add("joint", {"name": p.names.of(f"rack of {name}", "joint"), "type": "rack_and_pinion",
-                    "joints": (name, line) if m.jnt_type[j] == HINGE else (line, name), "radius": 1.0})
+def _add_ball_limit(p: Parts, j: int, table: Table) -> None:
+    """Of the angle of its quaternion."""
+    name, at, most = table["name"], p.m.jnt_qposadr[j], float(p.m.jnt_range[j][1])
+    q = p.d.qpos[at:at + 4]
+    turned = 2 * math.atan2(float(np.linalg.norm(q[1:])), abs(float(q[0])))
+    if not 0 < most <= _FARTHEST:
+        return p.losses.add(_BALL_LIMITS, name)
+    if turned > most - _AT_A_LIMIT:
+        return p.losses.add(_LIMITS_AT_START, name)
+    p.losses.add(_SOFT_LIMITS, name)
+    del table["at"]
+    table["frames"], table["limit"] = frames_of_ball(p, j, np.eye(3)), most
     return None
+
+
+def frames_of_ball(p: Parts, j: int, rest: Any) -> list[Table]:
+    """One on each body, which coincide where the joint is turned by a matrix."""
+    m, d = p.m, p.d
+    joint = next(t for t in p.root["joint"] if t["name"] == p.joint_names[j])
+    at = m.jnt_qposadr[j]
+    turned = matrix_of(d.qpos[at:at + 4])   # axes of the second frame in those of the first
+    seen = np.array(d.xmat[m.jnt_bodyid[j]].reshape(3, 3))   # of the second frame, in the world
+    return [Table({"point": point_on(p, name, d.xanchor[j]),
+                   "directors": tuple(tuple(float(x) for x in row) for row in (axes_of(p, name).T @ F).T)}, p.place)
+            for name, F in zip(joint["between"], (seen @ turned.T @ rest, seen))]
+
+
+def axes_of(p: Parts, body: str) -> Any:
+    """Of a body as it is placed, or of the world."""
+    if body == WORLD:
+        return np.eye(3)
+    table = next(t for t in p.root["body"] if t["name"] == body)
+    return np.array(table.get("directors", np.eye(3))).T
+
+
+def point_on(p: Parts, body: str, point: Any) -> tuple[float, ...]:
+    """A place in the world in coordinates of a body."""
+    if body == WORLD:
+        return tuple(float(x) for x in point)
+    table = next(t for t in p.root["body"] if t["name"] == body)
+    return tuple(float(x) for x in axes_of(p, body).T @ (np.array(point) - np.array(table["position"])))
 
 
 # What closes loops, and who follows whom.
@@ -156,6 +170,8 @@ def add_equalities(p: Parts) -> None:
         elif kind == _TENDON and (terms := [fixed_terms(m, int(t)) if t >= 0 else {} for t in (m.eq_obj1id[e], m.eq_obj2id[e])])[0] \
                 and (terms[1] or m.eq_obj2id[e] < 0):
             _add_coupling(p, e, *terms)
+        elif kind == _TENDON and m.eq_obj2id[e] < 0 and (over := rope_over(p, int(m.eq_obj1id[e]))) is not None:
+            _add_rope(p, e, over)
         else:
             p.losses.add(_OTHER_EQUALITY, name_of(m, "eq", e))
 
@@ -169,6 +185,35 @@ def fixed_terms(m: Any, t: int) -> dict[int, float]:
         joint = int(m.wrap_objid[w])
         terms[joint] = terms.get(joint, 0.0) + float(m.wrap_prm[w])
     return terms
+
+
+_SITE = 3   # mjWRAP_SITE
+
+
+def rope_over(p: Parts, t: int) -> list[Table] | None:
+    """The sites that a tendon runs over, as points of a rope; None for one that wraps around something, or has no length."""
+    m, d = p.m, p.d
+    over: list[Table] = []
+    ends: list[Any] = []
+    for w in range(m.tendon_adr[t], m.tendon_adr[t] + m.tendon_num[t]):
+        if m.wrap_type[w] != _SITE:
+            return None
+        site = int(m.wrap_objid[w])
+        body = int(p.owner[m.site_bodyid[site]])
+        over.append(Table({"body": p.body_names[body], "point": p.in_body(body, d.site_xpos[site])}, p.place))
+        ends.append(np.array(d.site_xpos[site]))
+    moves = len({at["body"] for at in over}) > 1
+    return over if moves and all(np.linalg.norm(b - a) > 1e-9 for a, b in zip(ends, ends[1:])) else None
+
+
+def _add_rope(p: Parts, e: int, over: list[Table]) -> None:
+    """length = length at qpos0 + a0."""
+    m = p.m
+    length = float(m.tendon_length0[m.eq_obj1id[e]] + m.eq_data[e][0])
+    name = p.named("eq", e, "joint")
+    p.add("joint", {"name": name, "type": "rod", "over": over, "length": length})
+    p.root["start"] = Table({"initial": "project"}, p.place)   # the pose need not close it
+    p.losses.add(_RIGID, name)
 
 
 def _ends(p: Parts, e: int) -> list[tuple[int, Any, Any]]:
@@ -221,7 +266,7 @@ def _add_coupling(p: Parts, e: int, follows: Mapping[int, float], leads: Mapping
     poly = [float(x) for x in m.eq_data[e][:5]]
     name = name_of(m, "eq", e)
     if any(poly[2:]):
-        return p.losses.add(_CURVED, name)
+        return _add_law(p, e, follows, leads, poly)
     terms = dict(follows)
     for j, factor in leads.items():
         terms[j] = terms.get(j, 0.0) - poly[1] * factor
@@ -236,6 +281,25 @@ def _add_coupling(p: Parts, e: int, follows: Mapping[int, float], leads: Mapping
     name = p.named("eq", e, "coupling")
     p.losses.add(_RIGID, name)
     return couple(p, name, terms)
+
+
+def _add_law(p: Parts, e: int, follows: Mapping[int, float], leads: Mapping[int, float], poly: list[float]) -> None:
+    """follows - its own at qpos0 = a0 + a1 x + a2 x^2 + .., x = leads - its own at qpos0."""
+    m = p.m
+    if len(follows) != 1 or len(leads) != 1 or any(j not in p.coordinates for j in (*follows, *leads)) or set(follows) == set(leads):
+        return p.losses.add(_CURVED, name_of(m, "eq", e))
+    (follower, factor), (leader, by) = next(iter(follows.items())), next(iter(leads.items()))
+    start, start_of_leader = (float(m.qpos0[m.jnt_qposadr[j]]) for j in (follower, leader))
+    word = p.coordinates[leader].rpartition(".")[2]
+    x = f"({by!r}*({word} - ({start_of_leader!r})))"
+    sum_of = " + ".join([f"{factor * start + poly[0]!r}", *(f"({c!r})*{x}^{k}" for k, c in enumerate(poly) if k and c)])
+    name = p.named("eq", e, "coupling")
+    p.add("joint", {"name": name, "type": "coupling", "terms": Table({p.coordinates[follower]: factor}, p.place),
+                    "law": Table({"of": p.coordinates[leader], "expression": sum_of}, p.place)})
+    if m.eq_type[e] != _JOINT:   # followers of joints are put where the law has them
+        p.root["start"] = Table({"initial": "project"}, p.place)
+    p.losses.add(_RIGID, name)
+    return None
 
 
 def _in_teeth(p: Parts, name: str, terms: Mapping[int, float]) -> dict[int, float]:

@@ -10,14 +10,14 @@ import numpy as np
 from ._errors import fault
 from ._losses import Loss, lost
 from ._mujoco_fields import BALL, FREE, WORLD, array, is_off, name_of, original
-from ._mujoco_joints import fixed_terms, matrix_of
+from ._mujoco_joints import fixed_terms, frames_of_ball, matrix_of, rope_over
 from ._tree import Table
 
 if TYPE_CHECKING:
     from ._mujoco_parts import Parts
 
 _FREE_SPRING = lost("joint", "stiffness and armature of free joints are not kept")
-_SPATIAL = lost("tendon", "spatial tendons are not kept")
+_SPATIAL = lost("tendon", "spatial tendons that wrap around bodies, or run over pulleys, are not kept")
 _TENDON = lost("tendon", "limits, friction and armature of tendons, and what is not linear in them, are not kept")
 _ACTUATOR = lost("actuator", "muscles, actuators with states of their own, plugins and delays are not kept")
 _TRANSMISSION = lost("actuator", "actuators are not kept that act on sites, bodies, cranks, ball and free joints, or spatial tendons")
@@ -54,32 +54,11 @@ def add_loads_of_body(p: Parts, b: int, gravity: Any) -> None:
 
 def _add_ball_spring(p: Parts, j: int) -> None:
     """A torque along the rotation from where it is at rest, as long as the angle."""
-    m, d = p.m, p.d
     joint = next(t for t in p.root["joint"] if t["name"] == p.joint_names[j])
-    first, second = joint["between"]
-    a = m.jnt_qposadr[j]
-    turned = matrix_of(d.qpos[a:a + 4])   # axes of the second frame in those of the first
-    rest = matrix_of(m.qpos_spring[a:a + 4])
-    axes = [np.eye(3) if name == WORLD else _axes_of(p, name) for name in (first, second)]
-    seen = np.array(d.xmat[m.jnt_bodyid[j]].reshape(3, 3))   # of the second frame, in the world
-    frames = [seen @ turned.T @ rest, seen]
-    ends = [Table({"point": _point_of(p, name, d.xanchor[j]), "directors": tuple(tuple(float(x) for x in row) for row in (A.T @ F).T)}, p.place)
-            for name, A, F in zip((first, second), axes, frames)]
-    k = float(m.jnt_stiffness[j])
-    p.add("load", {"name": p.names.of(f"spring of {joint['name']}", "load"), "type": "bushing", "between": (first, second), "frames": ends,
-                   "stiffness": (0.0, 0.0, 0.0, k, k, k)})
-
-
-def _axes_of(p: Parts, body: str) -> Any:
-    table = next(t for t in p.root["body"] if t["name"] == body)
-    return np.array(table.get("directors", np.eye(3))).T
-
-
-def _point_of(p: Parts, body: str, point: Any) -> tuple[float, ...]:
-    if body == WORLD:
-        return tuple(float(x) for x in point)
-    table = next(t for t in p.root["body"] if t["name"] == body)
-    return tuple(float(x) for x in _axes_of(p, body).T @ (np.array(point) - np.array(table["position"])))
+    at = p.m.jnt_qposadr[j]
+    k = float(p.m.jnt_stiffness[j])
+    p.add("load", {"name": p.names.of(f"spring of {joint['name']}", "load"), "type": "bushing", "between": joint["between"],
+                   "frames": frames_of_ball(p, j, matrix_of(p.m.qpos_spring[at:at + 4])), "stiffness": (0.0, 0.0, 0.0, k, k, k)})
 
 
 # Along coordinates.
@@ -117,15 +96,31 @@ def _usable(p: Parts, terms: Mapping[int, float]) -> bool:
     return bool(terms) and all(j in p.coordinates for j in terms)
 
 
+def _add_rope(p: Parts, t: int, name: str, over: list[Table], stiffness: float, damping: float) -> None:
+    """A spring along a tendon over sites: none between two lengths, and linear beyond them."""
+    low, high = (float(x) for x in p.m.tendon_lengthspring[t])
+    _check(p, f"tendon '{name}'", stiffness, damping, low, high)
+    content: dict[str, Any] = {"name": p.names.of(name, "tendon"), "type": "spring", "over": over}
+    if damping:
+        content["damping"] = damping
+    if stiffness and low == high:
+        content.update(stiffness=stiffness, free_length=low)
+    elif stiffness:
+        content.update(law="table", free_length=low, table=Table(
+            {"elongations": (-1.0, 0.0, high - low, high - low + 1), "forces": (-stiffness, 0.0, 0.0, stiffness)}, p.place))
+    p.add("load", content)
+
+
 def add_tendons(p: Parts) -> None:
-    """Springs and dampers of tendons that are sums of coordinates."""
+    """Springs and dampers of tendons that are sums of coordinates, or run over sites."""
     m = p.m
     for t in range(m.ntendon):
         name, terms = name_of(m, "tendon", t), fixed_terms(m, t)
         limited = m.tendon_limited[t] and not is_off(m, "LIMIT")
         friction = m.tendon_frictionloss[t] > 0 and not is_off(m, "FRICTIONLOSS")
         bent = [array(m, field)[t] for field in ("tendon_stiffnesspoly", "tendon_dampingpoly", "tendon_springyield", "tendon_armature")]
-        if not _usable(p, terms):
+        over = None if terms else rope_over(p, t)
+        if over is None and not _usable(p, terms):
             p.losses.add(_SPATIAL, name)
             continue
         if limited or friction or any(np.any(x) for x in bent):
@@ -133,6 +128,9 @@ def add_tendons(p: Parts) -> None:
         stiffness = 0.0 if is_off(m, "SPRING") else float(m.tendon_stiffness[t])
         damping = 0.0 if is_off(m, "DAMPER") else float(np.ravel(m.tendon_damping[t])[0])
         if not stiffness and not damping:
+            continue
+        if over is not None:
+            _add_rope(p, t, name, over, stiffness, damping)
             continue
         _check(p, f"tendon '{name}'", stiffness, damping, m.tendon_lengthspring[t], list(terms.values()))
         symbols, parts = _Symbols(p), []

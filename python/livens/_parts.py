@@ -30,7 +30,8 @@ UNITS = {
     "potential": "J", "energy": "J", "work": "J", "drift": "J", "position_error": "m", "orientation_error": "rad",
     "velocity_error": "m/s", "rigidity_stress": "N m", "mean_stress": "Pa", "reaction_error": "1", "growth": "1", "t": "s", "power": "W",
     "acceleration": "m/s^2", "angular_acceleration": "rad/s^2", "center_acceleration": "m/s^2",
-    "angle_acceleration": "rad/s^2", "displacement_acceleration": "m/s^2"}
+    "angle_acceleration": "rad/s^2", "displacement_acceleration": "m/s^2",
+    **{f"angle_{k}{end}": unit for k in (1, 2, 3) for end, unit in (("", "rad"), ("_rate", "rad/s"), ("_acceleration", "rad/s^2"))}}
 _BODY_ARRAYS = ("position", "center_of_mass", "quaternion", "directors", "velocity", "angular_velocity",
                 "angular_velocity_body", "acceleration", "angular_acceleration", "linear_momentum", "angular_momentum")
 
@@ -290,7 +291,7 @@ class PointSeries(Part):
 
 
 class JointSeries(Part):
-    """A joint or drive along a motion; its coordinates (``angle``, ``displacement``, rates) are attributes, too."""
+    """A joint or drive along a motion; its coordinates (``angle``, ``displacement``, ``angle_1``, rates) are attributes, too."""
 
     def __init__(self, series: Series, name: str, index: int, first: int, coordinates: list[tuple[str, str]]) -> None:
         super().__init__(series, name, index)
@@ -310,7 +311,7 @@ class JointSeries(Part):
             if name in (known, known + "_rate"):
                 column = "coordinate" if name == known else "coordinate_rate"
                 return self._series._shaped(self._series._scalars()[column][:, self._first + i])
-        if name in ("effort", "power"):
+        if name in ("effort", "power", "tension"):
             column = f"{name} {self._index}"
             if column in self._series._result.drive_columns:
                 return self._series._shaped(self._series._drives()[column][:, 0])
@@ -328,12 +329,13 @@ class JointSeries(Part):
 
     def _names(self) -> list[str]:
         names = [name + end for name in self.coordinates for end in ("", "_rate", "_acceleration")]
-        drives = [key for key in ("effort", "power") if f"{key} {self._index}" in self._series._result.drive_columns]
+        drives = [key for key in ("effort", "power", "tension") if f"{key} {self._index}" in self._series._result.drive_columns]
         return [*names, "force", "torque", *drives, *self._efforts()]
 
     def _efforts(self) -> dict[str, LoadSeries]:
-        """The loads that the joint states itself: "effort" along its coordinate, or of two "angle_effort" and the other."""
-        ends = {"": "effort", " angle": "angle_effort", " displacement": "displacement_effort"}
+        """The loads that the joint states itself: "effort" along its coordinate, of several "angle_effort" and the others;
+        "limit_effort" of a ball joint."""
+        ends = {"": "effort", " limit": "limit_effort", **{f" {name}": f"{name}_effort" for name in self.coordinates}}
         own = [name for name, type, told in self._series._result.loads if type == "joint" and told[0][0] == "effort"]
         return {word: self._series.loads[self._name + end] for end, word in ends.items() if self._name + end in own}
 
@@ -341,8 +343,8 @@ class JointSeries(Part):
         """The unit of an attribute: ``"N m"``."""
         if name in self._efforts():
             return self._efforts()[name].unit("effort")
-        if name == "effort":
-            return str(self._series._result.drive_columns[f"effort {self._index}"])
+        if name in ("effort", "tension"):
+            return str(self._series._result.drive_columns[f"{name} {self._index}"])
         return super().unit(name)
 
     def force_in(self, body: str | Entry | Part) -> Floats:

@@ -40,6 +40,17 @@ def _no_point(part: object) -> bool:
     return False
 
 
+def _on_rope(end: Any, is_point: Callable[[object], bool]) -> Any:
+    """A body, a point, or (body, point) as a table of ``over``; what is one stays."""
+    if isinstance(end, Mapping):
+        return end
+    if is_point(end):
+        return {"point": end}
+    if isinstance(end, (tuple, list)) and len(end) == 2:
+        return {"body": end[0]} if end[1] is None else {"body": end[0], "point": end[1]}
+    return {"body": end}
+
+
 def arranged(content: Mapping[str, Any], kind: str = "",
              is_point: Callable[[object], bool] = _no_point) -> dict[str, Any]:
     """first, second -> between (or joints), and points where they are (body, point) or points."""
@@ -55,6 +66,8 @@ def arranged(content: Mapping[str, Any], kind: str = "",
         made["shape"] = shape
     if is_point(content.get("body")) and content.get("point") is None and "point" in content:
         made["body"], made["point"] = None, content["body"]   # which tells its body
+    if isinstance(made.get("over"), (tuple, list)):
+        made["over"] = [_on_rope(end, is_point) for end in made["over"]]
     both = [content[key] for key in ("first", "second") if content.get(key) is not None]
     if not both:
         return made

@@ -62,11 +62,13 @@ class RestJoint(_Coordinates):
     """False if other joints of a closed loop could carry part of the reactions; the smallest ones are given."""
     effort: float
     """For a drive along a coordinate: its force or torque along it, N or N m; nan otherwise."""
+    tension: float
+    """For a rope, a rod over several points: how much it pulls, N; nan otherwise."""
 
     def __init__(self, name: str, coordinates: Mapping[str, float], force: Floats, torque: Floats, unique: bool,
-                 effort: float) -> None:
+                 effort: float, tension: float) -> None:
         self.name, self.coordinates, self.force, self.torque, self.unique = name, coordinates, force, torque, unique
-        self.effort = effort
+        self.effort, self.tension = effort, tension
 
     def __repr__(self) -> str:
         values = "".join(f"{name} = {value:.6g}, " for name, value in self.coordinates.items())
@@ -177,7 +179,8 @@ class Equilibrium(_ByName):
         def made(i: int) -> RestJoint:
             values = {word: float(self._found["coordinate"][at]) for word, at in columns[i][1].items()}
             return RestJoint(columns[i][0], values, self._found["force"][i], self._found["torque"][i],
-                             bool(self._found["unique"][i]), float(self._found["effort"][i]))
+                             bool(self._found["unique"][i]), float(self._found["effort"][i]),
+                             float(self._found["tension"][i]))
         return Parts("joint", [name for name, _ in columns], made)
 
     @property

@@ -264,9 +264,9 @@ class MechanismState:
             if not np.isnan(body.quaternion[0]):
                 kept.update(quaternion=tuple(body.quaternion.tolist()), angular_velocity=tuple(body.angular_velocity.tolist()))
             return kept
-        turned = tuple({"joint": joint, "coordinate": "angle", "value": value}
+        turned = tuple({"joint": joint, "coordinate": word, "value": value}
                        for joint, values in self._state.joints for word, value, _, placed in values
-                       if word == "angle" and abs(value - placed) > 3)   # bodies do not tell turns
+                       if word.startswith("angle") and abs(value - placed) > 3)   # bodies do not tell turns
         return Condition("state", {name: keys(body) for name, body in self.bodies.items()}, turned)
 
     def __repr__(self) -> str:

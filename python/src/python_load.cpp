@@ -96,7 +96,7 @@ void add_python_load(Model& model, const std::string& name, const std::string& b
     load.type = "python";
     load.bodies = {index, world};
     load.depends_on_X = load.depends_on_V = true;
-    load.needs_directors = {!is_point, false};
+    load.needs_directors[0] = !is_point;
     load.forces = [forces](const LoadArguments& at, LoadForces& F) { F[0] = forces(at); };
     load.tangent = [forces, step, is_point](const LoadArguments& given, LoadTangent& tangent) {
         LoadArguments at = given;

@@ -92,7 +92,7 @@ nb::dict found(const Model& model, const Equilibrium& at)
     d["iterations"] = at.iterations;
     d["residual"] = at.residual;
     d["notes"] = at.notes;
-    Vectors positions, quaternions, coordinates, forces, torques, efforts;
+    Vectors positions, quaternions, coordinates, forces, torques, efforts, tensions;
     for (int b = 0; b < model.n_bodies(); ++b) {
         const Matrix34& X = at.state.X[static_cast<std::size_t>(b)];
         append(positions, X.column(0));
@@ -118,6 +118,7 @@ nb::dict found(const Model& model, const Equilibrium& at)
         append(torques, reaction.torque);
         const auto effort = drive_effort(joint);
         efforts.push_back(effort ? effort->of(joint, at.state.X, reaction) : nan);
+        tensions.push_back(joint.over.empty() ? nan : rope_tension(joint, at.state.X, reaction));
         unique.append(at.is_found && at.joint_is_unique[j]);
     }
     const auto n_bodies = static_cast<std::size_t>(model.n_bodies()), n_joints = model.joints().size();
@@ -130,6 +131,7 @@ nb::dict found(const Model& model, const Equilibrium& at)
     d["force"] = array(std::move(forces), {n_joints, 3});
     d["torque"] = array(std::move(torques), {n_joints, 3});
     d["effort"] = array(std::move(efforts), {n_joints});
+    d["tension"] = array(std::move(tensions), {n_joints});
     d["unique"] = unique;
     d["turned"] = turned;
     return d;

@@ -464,6 +464,7 @@ std::map<std::string, std::string> drive_columns(const Result& r)
     if (r.run.motion.multipliers.empty() && r.run.motion.end_multipliers.empty()) return names;
     for (std::size_t j = 0; j < model.joints().size(); ++j) {
         const Joint& joint = model.joints()[j];
+        if (!joint.over.empty()) names["tension " + std::to_string(j)] = "N";
         if (joint.type != "drive") continue;
         if (const auto effort = drive_effort(joint))
             names["effort " + std::to_string(j)] = effort->coordinate.is_angle() ? "N m" : "N";

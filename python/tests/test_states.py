@@ -376,15 +376,15 @@ def test_what_is_no_state_is_refused(q: Any, v: Any, code: str, words: str) -> N
     assert "test_states.py" in str(caught.value)
 
 
-def test_a_universal_joint_alone_is_told_by_its_body() -> None:
-    m = lv.Model("cross")
+def test_shafts_of_constant_velocity_are_told_by_their_bodies() -> None:
+    m = lv.Model("shafts")
     m.add_body("rod", lv.box(0.1, 0.1, 1, mass=1), position=(0, 0, -0.5))
-    m.add_universal("cross", "world", "rod", at=(0, 0, 0), axes=[(1, 0, 0), (0, 1, 0)])
+    m.add_constant_velocity("shafts", "world", "rod", at=(0, 0, 0), axes=[(0, 0, 1), (0, 0, 1)])
     assert m.coordinates.q == ("rod.x", "rod.y")
     m.remove("rod")
-    m.remove("cross")
+    m.remove("shafts")
     m.add_body("rod", lv.box(0.1, 0.1, 1, mass=1))
-    m.add_universal("cross", "world", "rod", at=(0, 0, 0), axes=[(1, 0, 0), (0, 1, 0)])
+    m.add_constant_velocity("shafts", "world", "rod", at=(0, 0, 0), axes=[(0, 0, 1), (0, 0, 1)])
     with pytest.raises(lv.InputError, match="coordinates-missing") as caught:
         m.at()
     assert "'rod'" in str(caught.value)

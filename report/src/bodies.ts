@@ -194,6 +194,8 @@ export function extent_of(run: Run): Extent {
   for (const joint of meta.joints) if (joint.first < 0) all.push(...joint.point_first);
   for (const { first, path } of meta.joints)
     if (first < 0) for (const place of path ?? []) all.push(...place);
+  for (const { over } of [...meta.joints, ...meta.loads])
+    for (const { body, point } of over ?? []) if (body < 0) all.push(...point);
   for (const spring of run.springs) if (spring.second < 0) all.push(...spring.point_second!);
   all.push(...still_points(meta.world.map(placed), all));
   const whole = Float32Array.from(all.length ? all : [-1, -1, -1, 1, 1, 1]);

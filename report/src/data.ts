@@ -38,6 +38,12 @@ export interface Joint {
   from: number | null; // s, when it begins and ends to act; null: always
   until: number | null;
   path?: Vector[]; // of a slot: its whole curve, on the first body
+  over?: On[]; // of a rope: what it runs over
+}
+/** A point of a body, or of the world. */
+export interface On {
+  body: number;
+  point: Vector;
 }
 export interface Load {
   name: string;
@@ -47,6 +53,7 @@ export interface Load {
   point_first: Vector | null;
   point_second: Vector | null;
   place: Vector | null; // where force and torque are told, if there are no points
+  over?: On[]; // of a rope: what it runs over
 }
 export interface Sensor {
   name: string;

@@ -14,7 +14,7 @@ import {
   Vector3,
 } from "three";
 import { Couplings } from "./couplings";
-import type { Joint } from "./data";
+import type { Joint, On } from "./data";
 import { has_foot, pieces_of, type Part, type Piece } from "./glyphs";
 import { Instances, Poses, acts, unit_z, vector, type Place } from "./instances";
 import type { Run } from "./run";
@@ -23,11 +23,21 @@ import { body_colour, theme } from "./theme";
 const foot_height = 3.5; // radii
 const many = 30; // joints that are drawn with fewer sides
 
+/** Between two points; a rope has one for each of its spans. */
+interface Bar {
+  joint?: Joint; // none: always there
+  first: number;
+  second: number;
+  a: Vector3;
+  b: Vector3;
+  thick: number; // radii
+}
+
 export class Joints {
   readonly objects: Object3D[] = [];
   private readonly places: Record<Part, Place[]> = { box: [], cylinder: [], ball: [] };
   private readonly layers: Instances[] = [];
-  private readonly bars: { joint: Joint; a: Vector3; b: Vector3 }[] = [];
+  private readonly bars: Bar[] = [];
   private bar_mesh: InstancedMesh | null = null;
   private readonly grey = new Color(theme().joint);
   private readonly fixed = new Color(theme().foot);
@@ -96,8 +106,11 @@ export class Joints {
         this.put({ part: "cylinder", half: [0.55, 0.55, 1.5], at: [0, 0, -1.5] }, -1, first, run.up, fixed);
         this.put({ part: "box", half: [2.4, 2.4, 0.3], at: [0, 0, -3.2] }, -1, first, run.up, fixed);
       }
-      if (joint.bar) this.bars.push({ joint, a: first, b: second });
+      if (joint.bar)
+        this.bars.push({ joint, first: joint.first, second: joint.second, a: first, b: second, thick: 0.6 });
+      this.add_rope(joint.over, joint);
     }
+    for (const load of run.meta.loads) this.add_rope(load.over);
     for (const load of run.meta.loads)
       if (load.type === "bushing" && load.place)
         for (const piece of pieces_of("bushing"))
@@ -105,6 +118,18 @@ export class Joints {
     for (const spring of run.springs)
       if (spring.second < 0)
         this.put({ part: "box", half: [1.4, 1.4, 1.4] }, -1, vector(spring.point_second!), run.up, fixed);
+  }
+
+  /** A thin bar for each span, and an eye where it is held or turns. */
+  private add_rope(over: On[] = [], joint?: Joint) {
+    over.forEach(({ body, point }, k) => {
+      const b = vector(point),
+        before = over[k - 1],
+        eye: Piece = { part: "ball", half: [0.6, 0.6, 0.6] };
+      this.put(eye, body, b, this.run.up, body < 0 ? this.fixed : this.grey, joint);
+      if (before)
+        this.bars.push({ joint, first: before.body, second: body, a: vector(before.point), b, thick: 0.3 });
+    });
   }
 
   /** From the centre of a body that has no shape to what holds it. */
@@ -138,18 +163,19 @@ export class Joints {
   }
   /** Bars between points that act. */
   bars_at(t: number) {
-    return this.bars.filter(({ joint }) => acts(joint, t)).length;
+    return this.bars.filter(({ joint }) => !joint || acts(joint, t)).length;
   }
   move(poses: Poses, is_shown: boolean, t: number) {
     for (const object of this.objects) object.visible = is_shown;
     if (!is_shown) return;
     for (const layer of this.layers) layer.move(poses, t);
     const m = new Matrix4(),
-      r = 0.6 * this.radius;
-    this.bars.forEach(({ joint, a, b }, i) => {
-      const from = poses.place(joint.first, a),
-        arm = poses.place(joint.second, b).sub(from),
-        thick = acts(joint, t) ? r : 0,
+      r = this.radius;
+    this.bars.forEach((bar, i) => {
+      const { joint, first, second, a, b } = bar,
+        from = poses.place(first, a),
+        arm = poses.place(second, b).sub(from),
+        thick = !joint || acts(joint, t) ? bar.thick * r : 0,
         length = arm.length();
       const turn = new Quaternion().setFromUnitVectors(
         unit_z,

@@ -42,7 +42,7 @@ export class Run {
     const g = new Vector3(...this.meta.gravity);
     this.up = g.length() > 0 ? g.negate().normalize() : new Vector3(0, 0, 1);
     this.springs = this.meta.loads.filter(
-      (l) => l.type.includes("spring") && l.point_first && l.point_second,
+      (l) => l.type.includes("spring") && l.point_first && l.point_second && !l.over?.length,
     );
     for (const { first, second, point_first, point_second } of [...this.meta.joints, ...this.springs])
       for (const [body, point] of [

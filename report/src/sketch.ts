@@ -2,7 +2,7 @@
 // The mechanism as engineers sketch it, for slides and blackboards: links as lines and plates, joints by their symbols, flat
 // as one looks at it now. SVG.
 import { Vector3 } from "three";
-import type { Joint } from "./data";
+import type { Joint, On } from "./data";
 import { Poses, acts, vector } from "./instances";
 import { spread } from "./labels";
 import type { Look, Screen } from "./studio";
@@ -123,6 +123,8 @@ class Sketch {
     }
     for (const joint of run.meta.joints)
       if (joint.first < 0 && !placeless.has(joint.type)) see(this.flat(vector(joint.point_first)));
+    for (const { over } of [...run.meta.joints, ...run.meta.loads])
+      for (const { body, point } of over ?? []) if (body < 0) see(this.flat(vector(point)));
     for (const spring of run.springs) if (spring.second < 0) see(this.flat(vector(spring.point_second!)));
     const { width, height } = this.look,
       share = 1 - 2 * margin;
@@ -245,6 +247,7 @@ class Sketch {
       p = this.place(second, vector(joint.point_second)),
       q = this.place(first, vector(joint.point_first));
     if (placeless.has(type) || !acts(joint, this.t)) return;
+    if (joint.over?.length) return this.rope(joint.over);
     if (joint.bar) {
       this.line([q, p], ink, 1.6);
       for (const end of [q, p]) this.circle(end, 4, card, ink);
@@ -282,6 +285,16 @@ class Sketch {
     if (type === "spherical" || type === "constant_velocity") this.circle(p, 3, ink, ink);
   }
 
+  private rope(over: On[]) {
+    const { ink, card } = theme(),
+      points = over.map(({ body, point }) => this.place(body, vector(point)));
+    this.line(points, ink, 1.6);
+    points.forEach((p, k) => {
+      this.circle(p, 4, card, ink);
+      if (over[k].body < 0) this.ground(p);
+    });
+  }
+
   private names() {
     const { bodies } = this.screen.run.meta,
       size = 13 * this.unit;
@@ -311,6 +324,7 @@ class Sketch {
     this.springs();
     this.bodies();
     for (const joint of run.meta.joints) this.joint(joint);
+    for (const { over } of run.meta.loads) if (over?.length) this.rope(over);
     if (names) this.names();
     return `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}"><title>${plain(run.name)}</title>${this.parts.join("")}</svg>\n`;
   }

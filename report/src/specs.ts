@@ -144,6 +144,17 @@ class Specs {
       "power",
     );
   }
+  /** Of a joint's coordinate, and of its angles by number. */
+  private of_joint(index: number, name: string): Bare[] {
+    const { name: joint } = this.run.meta.joints[index],
+      numbers = name.startsWith("angle") ? [" 1", " 2", " 3"] : [];
+    return [
+      ...this.of("joint", index, name, joint),
+      ...numbers.flatMap((n) =>
+        this.of("joint", index, name.replace("angle", `angle${n}`), `${joint} angle${n}`),
+      ),
+    ];
+  }
   joints() {
     const { meta } = this.run,
       many = (series: Bare[]) => series.slice(0, most_series);
@@ -160,7 +171,7 @@ class Specs {
         "All joints",
         title,
         unit,
-        many(meta.joints.flatMap((j, i) => this.of("joint", i, name, j.name))),
+        many(meta.joints.flatMap((_, i) => this.of_joint(i, name))),
       );
     const kept = meta.joints.flatMap((j, i) => (j.type === "drive" ? [] : [{ name: j.name, i }]));
     for (const [id, what, title, unit] of [
@@ -168,6 +179,13 @@ class Specs {
       ["torques", "torque", "Torques of joints", "N m"],
     ])
       this.add(id, "All joints", title, unit, this.sizes("reaction", what, kept));
+    this.add(
+      "tensions",
+      "All joints",
+      "Tensions of ropes",
+      "N",
+      many(meta.joints.flatMap((j, i) => this.of("drive", i, "tension", j.name))),
+    );
     for (const [id, what, title, unit] of [
       ["loads", "force", "Forces of loads", "N"],
       ["load torques", "torque", "Torques of loads", "N m"],
@@ -316,11 +334,11 @@ export function phases_of(run: Run): PhaseSpec[] {
     at: (t) => run.curves.at(channel, t),
   });
   meta.channels.forEach(({ kind, index, name }, c) => {
-    if (kind !== "joint" || !["angle", "displacement"].includes(name)) return;
+    if (kind !== "joint" || !/^(angle( \d)?|displacement)$/.test(name)) return;
     const rate = run.channel(kind, index, `${name} rate`),
       joint = meta.joints[index].name;
     if (rate < 0) return;
-    const title = `${joint}: phase portrait${name === "displacement" ? " of the displacement" : ""}`;
+    const title = `${joint}: phase portrait${name === "angle" ? "" : ` of the ${name}`}`;
     all.push({ id: `phase ${c}`, title, x: of(c, `${joint} ${name}`), y: of(rate, `${joint} ${name} rate`) });
   });
   const path = (id: string, title: string, axes: Quantity[]) => {

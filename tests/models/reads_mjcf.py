@@ -34,6 +34,8 @@ def arm(first, second, more=""):
 
 HINGED = "<joint name='{}' type='hinge' axis='{}' {}/>"
 PAIR = arm(HINGED.format("p", "0 1 0", ""), HINGED.format("q", "0 1 .2", ""))
+HUNG = arm(HINGED.format("p", "0 1 0", ""), HINGED.format("q", "0 1 .2", ""), "<site name='e' pos='.35 .02 .03'/>").replace(
+    "<body name='b'", "<site name='s' pos='.2 0 .1'/><body name='b'") + "<site name='o' pos='-.2 .1 .4'/><site name='w' pos='.5 .1 .6'/>"
 SLIDES = arm("<joint name='p' type='slide' axis='0 0 1' stiffness='900'/>", "<joint name='q' type='slide' axis='1 0 0'/>")
 STIFF = "solref='0.0005 1' solimp='.9999 .9999 .001 .5 2'"
 CASES = {   # the model, what moves at first by joint, and the bound
@@ -60,6 +62,13 @@ CASES = {   # the model, what moves at first by joint, and the bound
     "tendon": (PAIR, ["<tendon><fixed name='t' stiffness='20' damping='1'><joint joint='p' coef='1'/><joint joint='q' coef='-.5'/></fixed></tendon>",
                       "<actuator><position name='m' tendon='t' kp='3'/></actuator>"], {"p": 0.4, "q": 0.2}, 1e-9),
     "slack tendon": (PAIR, ["<tendon><fixed name='t' stiffness='40' springlength='-.1 .1'><joint joint='p' coef='1'/></fixed></tendon>"], {}, 1e-7),
+    "tendon over sites": (HUNG, ["<tendon><spatial name='t' stiffness='300' damping='3' springlength='.5'><site site='o'/><site site='s'/><site site='w'/>"
+                                "<site site='e'/></spatial></tendon>"], {"p": 0.4, "q": 0.2}, 1e-9),
+    "slack tendon over sites": (HUNG, ["<tendon><spatial name='t' stiffness='300' springlength='0 1.2'><site site='o'/><site site='s'/><site site='e'/>"
+                                      "</spatial></tendon>"], {"p": 0.4, "q": 0.2}, 1e-7),
+    "tendon of constant length": (HUNG, ["<tendon><spatial name='t'><site site='o'/><site site='s'/><site site='w'/><site site='e'/></spatial></tendon>",
+                                        f"<equality><tendon tendon1='t' {STIFF}/></equality>"], {}, 1e-6),
+    "curved coupling": (PAIR, [f"<equality><joint joint1='q' joint2='p' polycoef='.1 -.5 .3 .2 0' {STIFF}/></equality>"], {"p": 0.3}, 1e-7),
     "gear": (PAIR, [f"<equality><joint joint1='q' joint2='p' polycoef='.1 -2 0 0 0' {STIFF}/></equality>"], {"p": 0.3}, 1e-7),
     "gear without teeth": (PAIR, [f"<equality><joint joint1='q' joint2='p' polycoef='0 1.2345678 0 0 0' {STIFF}/></equality>"], {"p": 0.3}, 1e-7),
     "rack": (arm(HINGED.format("p", "0 1 0", ""), "<joint name='q' type='slide' axis='1 0 0'/>"),
@@ -139,7 +148,7 @@ class TakesEachAlone(unittest.TestCase):
             if m.eq_type[e] == mujoco.mjtEq.mjEQ_JOINT:   # as it is told: moved to where it belongs
                 follows, leads = m.eq_obj1id[e], m.eq_obj2id[e]
                 x = data.qpos[m.jnt_qposadr[leads]] if leads >= 0 else 0
-                data.qpos[m.jnt_qposadr[follows]] = m.eq_data[e][0] + m.eq_data[e][1] * x
+                data.qpos[m.jnt_qposadr[follows]] = np.polynomial.polynomial.polyval(x, m.eq_data[e][:5])
         return difference(m, made, at, data.qpos, v, [0.8 + spoilt] * m.nu), bound
 
     def test_a_control_that_is_off_is_seen(self):
@@ -203,6 +212,19 @@ class Tells(unittest.TestCase):
             else:
                 sol = lv.solve(m, 0.3)
                 self.assertAlmostEqual(sol["q"].angle[-1], float(ratio) * sol["p"].angle[-1], delta=2e-7)
+
+    def test_balls_are_limited_from_where_their_quaternion_is_one(self):
+        def ball(most):
+            return arm(f"<joint name='p' type='ball' limited='true' range='0 {most}'/>", "")
+        m = self.made(ball(0.7), qpos=[np.cos(0.1), np.sin(0.1), 0, 0])
+        m.add_sensor("s", type="joint", joint="p")
+        sol = lv.solve(m, 0.01)
+        self.assertAlmostEqual(sol.sensors["s"].rotation_angle[0], 0.2, delta=1e-12)
+        self.assertAlmostEqual(m["p"].limit, 0.7, delta=1e-12)
+        for most, word in ((0.1, "limits are not kept at or beyond which a joint begins"), (3.1, "limits of ball joints beyond 170 degrees are not kept")):
+            m = self.made(ball(most), qpos=[np.cos(0.1), np.sin(0.1), 0, 0])
+            self.assertIn("1 joint ('p')", losses(m)["import-lost", word])
+            self.assertIsNone(m["p"].limit)
 
     def test_limits_are_kept_left_out_or_told(self):
         bodies = arm(HINGED.format("p", "0 1 0", "range='-1 1'"), HINGED.format("q", "0 1 0", "range='0 2'"))

@@ -1392,7 +1392,7 @@ livens_mutant(NAME state_dead_centre
 
 # The slope of a coupled displacement without its factor: right where the factor is one, as in racks and screws.
 livens_mutant(NAME coupled_slide_slope
-              FILE multibody/joint_coordinates.cpp
+              FILE multibody/coupling_rows.cpp
               OLD [[value.gradient[0] = factor;]]
               NEW [[value.gradient[0] = factor / std::abs(factor);]]
               TESTS_OF properties
@@ -1414,6 +1414,70 @@ livens_mutant(NAME coupling_lost_in_projection
               NEW [[std::round(0 * (followed - values[r]) / row.period)]]
               TESTS_OF reference
               MUST_FAIL Couplings.AProjectedStartKeepsWhatTheStatedOneHad)
+
+# A span that is drawn through a point grows again behind it.
+livens_mutant(NAME rope_through_a_point
+              FILE multibody/joints/rod.cpp
+              OLD [[constexpr double closest = 0.01;]]
+              NEW [[constexpr double closest = -1;]]
+              TESTS_OF properties
+              MUST_FAIL CoupledJoints.ASpanDoesNotPassThroughAPoint)
+
+# An elastic rope pulls the ends of its first span alone: right for two points.
+livens_mutant(NAME rope_of_one_span
+              FILE multibody/loads/rope_spring.cpp
+              OLD [[tape.pull(spans[k].b.side, spans[k].b.p, -s, r[k]);]]
+              NEW [[tape.pull(spans[0].b.side, spans[0].b.p, -s, r[0]);]]
+              TESTS_OF reference
+              MUST_FAIL Ropes.RandomOnesMoveAsParticlesDo)
+
+# A law rises with each turn, but not in the count of positions that are one.
+livens_mutant(NAME law_without_its_rise
+              FILE multibody/coupling_rows.cpp
+              OLD [[value.value += rounds * law.rise;]]
+              NEW [[value.value += 0 * rounds * law.rise;]]
+              TESTS_OF reference
+              MUST_FAIL Cams.ALawOfAnAngleMayRiseWithEachTurn)
+
+# The second derivative of a law without that of the angle: the motion is right, and takes longer; accelerations are not.
+livens_mutant(NAME law_without_bend
+              FILE multibody/coupling_rows.cpp
+              OLD [[-f.second * angle.gradient[k] * angle.gradient[l] - f.first * angle.hessian[k][l];]]
+              NEW [[-f.second * angle.gradient[k] * angle.gradient[l];]]
+              TESTS_OF properties
+              MUST_FAIL CoupledJoints.ARopeAndACamPassTheKit)
+
+# Points of rotors with weight: right where all rotors are across gravity.
+livens_mutant(NAME rotors_with_weight
+              FILE multibody/model.cpp
+              OLD [[return body.is_rotor ? Matrix34{} : outer(gravity, body.mass.column(0));]]
+              NEW [[return outer(gravity, body.mass.column(0));]]
+              TESTS_OF unit_io
+              MUST_FAIL RotorInertia.OfASlideIsMassWithoutWeight)
+
+# The lever of a rotor without its root: right for the largest of those that share a point.
+livens_mutant(NAME rotor_lever
+              FILE multibody/rotors.cpp
+              OLD [[std::sqrt(group[k].inertia / mass)]]
+              NEW [[std::sqrt(group[0].inertia / mass)]]
+              TESTS_OF unit_io
+              MUST_FAIL RotorInertia.OfALoopMovesItAsBodiesBoundByRacksDo)
+
+# What the world does to rotors left out of the supplied momentum: right for rotors between bodies.
+livens_mutant(NAME rotors_without_support
+              FILE diagnostics/balance.cpp
+              OLD [[if (!rotors_.all.empty()) rotors_.now =]]
+              NEW [[if (rotors_.all.empty()) rotors_.now =]]
+              TESTS_OF unit_io
+              MUST_FAIL RotorInertia.KeepsEnergyAndBalances)
+
+# q'' without what velocities do to the coordinate: right at rest.
+livens_mutant(NAME rotor_curvature
+              FILE dynamics/coordinates/generalised_state.cpp
+              OLD [[constraint_curvature(row, {mechanism->placed.t}, placed.X, state.V));]]
+              NEW [[0 * constraint_curvature(row, {mechanism->placed.t}, placed.X, state.V));]]
+              TESTS_OF unit_io
+              MUST_FAIL RotorInertia.IsOneDiagonalTermOfTheMassMatrix)
 
 # Growth of entries from merger to merger is not watched: right wherever exchanges do.
 livens_mutant(NAME chain_without_reflections

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows that are functions of joint coordinates: a screw, a gear pair and a point on a curve.
+// Rows that are functions of joint coordinates: a screw, a gear pair, a point on a curve, a rope and a cam.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -7,6 +7,7 @@
 #include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/joint_coordinates.h"
 #include "livens/multibody/joints.h"
+#include "livens/multibody/joints/coordinate_laws.h"
 #include "livens/multibody/model.h"
 #include "properties/joint_kit.h"
 
@@ -98,6 +99,68 @@ Joint slot(int first, int second, const JointFrame& frame, const Matrix34&, cons
 const JointCase screw_case{"screw", 5, anywhere, screw};
 const JointCase slot_case{"slot", 2, anywhere, slot};
 
+/// To and fro between two points of each body.
+Joint rope(int first, int second, const JointFrame& frame, const Matrix34& X_first, const Matrix34& X_second)
+{
+    const Vector3 a = frame.point_first, b = frame.point_second;
+    const std::vector<BodyPoint> over{{first, a + Vector3{0.3, 0.4, -0.2}},
+                                      {second, b + Vector3{-0.5, 0.1, 0.3}},
+                                      {second, b + Vector3{0.2, 0.6, 0.1}},
+                                      {first, a + Vector3{-0.7, 0.2, 0.5}}};
+    Bodies X(static_cast<std::size_t>(std::max(first, second) + 1));
+    for (const auto& [body, place] : {std::pair{first, &X_first}, {second, &X_second}})
+        if (body != world) X[static_cast<std::size_t>(body)] = *place;
+    return rod("j", over, rope_length(over, X), X);
+}
+
+/// As a screw, but that it slides by a law of the angle.
+Joint cam(int first, int second, const JointFrame& frame, const Matrix34& X_first, const Matrix34& X_second)
+{
+    Joint joint = screw(first, second, frame, X_first, X_second);
+    joint.type = "cam";
+    const std::vector<PairForm> forms = joint.rows.back().coordinates;   // displacement, cosine, sine
+    CoupledLaw law{
+        formula_law(Expression("0.7*sin(q) + 0.2*cos(3*q)", {"q"}), true), {{forms[1], forms[2]}}, 0.4, ""};
+    joint.rows.back() = coupling_row({{1.5, {{forms[0]}}}}, -law.law.at({0.4}).value, 1, "law", &law);
+    return joint;
+}
+
+const JointCase rope_case{"rod", 1, anywhere, rope};
+const JointCase cam_case{"cam", 5, anywhere, cam, false};
+
+TEST(CoupledJoints, ARopeAndACamPassTheKit)
+{
+    // Exchanged, the points of the rope would be others, and the cam would be led by the other body.
+    for (const auto check : {check_joint_labels, check_joint_closure, check_joint_gradient, check_joint_rates,
+                             check_joint_rank, check_joint_objectivity, check_joint_world}) {
+        EXPECT_EQ(joined(check(rope_case)), "");
+        EXPECT_EQ(joined(check(cam_case)), "");
+    }
+}
+
+/// Steps are followed by what the values differ, and refused where a span would vanish on the way.
+TEST(CoupledJoints, ASpanDoesNotPassThroughAPoint)
+{
+    Random random(16);
+    const Bodies X{configuration({0, 0, 0}, identity<3>()), configuration({2, 1, 0}, identity<3>())};
+    const Joint joint = rod("j", {{0, {}}, {1, {}}}, 1, X);
+    const auto change = [&](const Vector3& to) {
+        const Bodies moved{X[0], configuration(to, identity<3>())};
+        Bodies step = moved;
+        for (std::size_t b = 0; b < step.size(); ++b) step[b] -= X[b];
+        return constraint_change(joint.rows[0], {}, X, {}, moved, step);
+    };
+    for (int n = 0; n < 100; ++n) {
+        const Vector3 to = Vector3{2, 1, 0} + random.vector();
+        EXPECT_NEAR(change(to), norm(to) - std::sqrt(5.0), 1e-15);
+    }
+    const double near = 2 + 1e-12;
+    EXPECT_NEAR(change({near, 1, 0}), (near - 2) * 2 / std::sqrt(5.0), 1e-22);
+    EXPECT_TRUE(std::isnan(change({-1, -0.5, 0})));
+    EXPECT_TRUE(std::isnan(change({0, 0, 0})));
+    EXPECT_FALSE(std::isnan(change({-1, 2, 0})));
+}
+
 TEST(CoupledJoints, AScrewAndASlotPassTheKit)
 {
     EXPECT_EQ(joined(check_joint(screw_case)), "");
@@ -124,7 +187,7 @@ TEST(CoupledJoints, AWrongDerivativeFailsTheRates)
         };
         return joint;
     };
-    for (const JointCase& joint : {screw_case, slot_case}) {
+    for (const JointCase& joint : {screw_case, slot_case, rope_case}) {
         EXPECT_EQ(joined(check_joint_rates(broken(joint, 1, 1))), "") << joint.type;
         EXPECT_NE(joined(check_joint_rates(broken(joint, 1.01, 1))), "") << joint.type;
         EXPECT_NE(joined(check_joint_rates(broken(joint, 1, 1.01))), "") << joint.type;

@@ -13,7 +13,7 @@ namespace {
 
 LoadForces forces(const Load& load, const LoadArguments& at)
 {
-    LoadForces F{};
+    LoadForces F(load.n_acted);
     load.forces(at, F);
     return F;
 }
@@ -28,13 +28,16 @@ auto derivative(Function f, double h)
     return sum;
 }
 
-/// Forces on both bodies as one column.
-Matrix<24, 1> stacked(const LoadForces& F)
+constexpr int n_stacked = 48;   // of four bodies at most
+
+/// Forces on all bodies as one column.
+Matrix<n_stacked, 1> stacked(const LoadForces& F)
 {
-    Matrix<24, 1> column{};
-    for (int i = 0; i < 24; ++i) column[i] = F[i / 12][i % 12];
+    Matrix<n_stacked, 1> column{};
+    for (std::size_t b = 0; b < F.size(); ++b) std::copy_n(F[b].a, 12, column.a + 12 * b);
     return column;
 }
+int n_forces(const Load& load) { return 12 * static_cast<int>(load.n_acted); }
 
 std::string decades(double error) { return "10^" + std::to_string(std::log10(std::abs(error) + 1e-300)); }
 
@@ -42,7 +45,7 @@ std::string decades(double error) { return "10^" + std::to_string(std::log10(std
 void compare_column(const Load& load, const LoadArguments& at, const LoadTangent& tangent, bool of_V,
                     std::size_t c, int variable, Failures& failures)
 {
-    const Matrix<24, 1> expected = derivative(
+    const Matrix<n_stacked, 1> expected = derivative(
         [&](double h) {
             LoadArguments moved = at;
             (of_V ? moved.V : moved.X)[c][variable] += h;
@@ -50,7 +53,7 @@ void compare_column(const Load& load, const LoadArguments& at, const LoadTangent
         },
         2e-3);
     double error = 0, size = 1;
-    for (int i = 0; i < 24; ++i) {
+    for (int i = 0; i < n_forces(load); ++i) {
         if (load.bodies[i / 12] == world) continue;
         const double given = (of_V ? tangent.V : tangent.X)[i / 12][c](i % 12, variable);
         error = std::isnan(given) ? given : std::max(error, std::abs(given - expected[i]));
@@ -103,7 +106,7 @@ Failures check_load_tangent(const LoadCase& load_case)
     for (int n = 0; n < of_states(1000) && failures.size() < 10; ++n) {
         const Load load = load_case.make(random);
         const LoadArguments at = random_arguments(random, load, load_case);
-        LoadTangent tangent(load.bodies.size());
+        LoadTangent tangent(load.bodies.size(), load.n_acted);
         if (load.depends_on_X || load.depends_on_V) load.tangent(at, tangent);
         for (const bool of_V : {false, true}) {
             if (!(of_V ? load.depends_on_V : load.depends_on_X)) {
@@ -124,12 +127,12 @@ namespace {
 std::vector<double> sizes_of_products(const Load& load, const LoadArguments& at)
 {
     const std::vector<ProductSlopes> products = load.products(at);
-    DenseMatrix U(24, static_cast<int>(products.size())), F(24, 1);
-    const Matrix<24, 1> all = stacked(forces(load, at));
-    std::copy_n(all.a, 24, F.a.begin());
+    DenseMatrix U(n_stacked, static_cast<int>(products.size())), F(n_stacked, 1);
+    const Matrix<n_stacked, 1> all = stacked(forces(load, at));
+    std::copy_n(all.a, n_stacked, F.a.begin());
     for (int k = 0; k < U.cols; ++k) {
-        const Matrix<24, 1> u = stacked(products[static_cast<std::size_t>(k)].direction);
-        std::copy_n(u.a, 24, U.a.begin() + static_cast<std::ptrdiff_t>(24 * k));
+        const Matrix<n_stacked, 1> u = stacked(products[static_cast<std::size_t>(k)].direction);
+        std::copy_n(u.a, n_stacked, U.a.begin() + static_cast<std::ptrdiff_t>(n_stacked * k));
     }
     std::vector<double> f = least_squares(U, F).a;
     add_scaled(F.a, -1, product(U, f));
@@ -210,7 +213,7 @@ Failures check_load_potential(const LoadCase& load_case)
         LoadArguments at = random_arguments(random, load, load_case);
         at.V = PerBody<Matrix34>(at.V.size());
         const LoadForces F = forces(load, at);
-        for (int i = 0; i < 24; ++i) {
+        for (int i = 0; i < n_forces(load); ++i) {
             if (load.bodies[i / 12] == world) continue;
             const double slope = derivative(
                 [&](double h) {
@@ -244,8 +247,8 @@ Failures check_load_breaks(const LoadCase& load_case)
         const bool broken =
             std::ranges::any_of(load.breaks, [&](double b) { return b >= t && b <= t + 2 * step; });
         if (broken) continue;
-        const Matrix<24, 1> a = force_at(t, Side::middle), b = force_at(t + 2 * step, Side::middle);
-        const Matrix<24, 1> bend = a - 2.0 * force_at(t + step, Side::middle) + b;
+        const Matrix<n_stacked, 1> a = force_at(t, Side::middle), b = force_at(t + 2 * step, Side::middle);
+        const Matrix<n_stacked, 1> bend = a - 2.0 * force_at(t + step, Side::middle) + b;
         if (!(largest(bend) < 1e-4 * (1 + largest(a))))
             failures.push_back("F bends or jumps at " + std::to_string(t));
     }
@@ -265,7 +268,7 @@ Failures check_load_directors(const LoadCase& load_case)
     for (int n = 0; n < 20; ++n) {
         const Load load = load_case.make(random);
         const LoadForces F = forces(load, random_arguments(random, load, load_case));
-        for (int b = 0; b < 2; ++b) {
+        for (std::size_t b = 0; b < load.n_acted; ++b) {
             if (load.bodies[b] == world || load.needs_directors[b]) continue;
             if (std::any_of(F[b].a + 3, F[b].a + 12, [](double entry) { return entry != 0; }))
                 failures.push_back("it acts on directors and says that it needs none");

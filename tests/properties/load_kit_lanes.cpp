@@ -66,12 +66,12 @@ void LoadAtPoints::add_alone(std::size_t c, std::vector<double>& turns)
 /// What F is made of: as X and X' are rounded, so is a large F times a small difference of theirs.
 double LoadAtPoints::scale_of(const LoadArguments& here) const
 {
-    LoadForces F{};
-    LoadTangent tangent(load_.bodies.size());
+    LoadForces F(load_.n_acted);
+    LoadTangent tangent(load_.bodies.size(), load_.n_acted);
     load_.forces(here, F);
     if (load_.depends_on_X || load_.depends_on_V) load_.tangent(here, tangent);
     double scale = 0;
-    for (std::size_t b = 0; b < 2; ++b)
+    for (std::size_t b = 0; b < load_.n_acted; ++b)
         for (int i = 0; i < 12 && load_.bodies[b] != world; ++i) {
             double terms = std::abs(F[b][i]);
             for (std::size_t c = 0; c < load_.bodies.size(); ++c)
@@ -137,9 +137,9 @@ struct SupplyAlone {
 
     SupplyAlone(const Load& load, const LoadArguments& at) : power(power_without_potential(load, at))
     {
-        LoadForces F{};
+        LoadForces F(load.n_acted);
         load.forces(at, F);
-        for (std::size_t b = 0; b < 2; ++b) {
+        for (std::size_t b = 0; b < load.n_acted; ++b) {
             if (load.bodies[b] == world) continue;
             force += F[b].column(0);
             of_force += norm(F[b].column(0));

@@ -103,6 +103,20 @@ LoadCase spring_case(const std::string& what, int second, void (*change)(SpringD
             }};
 }
 
+/// A rope that passes bodies, and the world, at the places of `on`; `change` takes parts of its law away.
+LoadCase rope_case(const std::string& what, const std::vector<int>& on, void (*change)(SpringDamper&))
+{
+    return {"rope_spring", what, [=](Random& random) {
+                SpringDamper law = spring(random);
+                law.stiffness *= 0.1;   // ropes are long
+                change(law);
+                std::vector<BodyPoint> over;
+                for (const int body : on) over.push_back({body, 3 * random.vector()});
+                const std::vector<Matrix34> X(4, configuration({}, identity<3>()));
+                return rope_spring("l", over, law, X);
+            }};
+}
+
 /// A pipe between two bodies that stand anywhere, or between one and the world.
 struct Pipe {
     std::array<Matrix34, 2> X;
@@ -164,6 +178,61 @@ Load limited_joint(Random& random, const Joint&, const NamedCoordinate& coordina
 Load any_actuator(Random& random, const Joint&, const NamedCoordinate& coordinate, const Configurations& X)
 {
     return actuator("l", coordinate, varying(random)[0], X);
+}
+
+/// A universal or a ball joint between bodies that stand anywhere; its coordinate or reading of that name.
+struct Turning {
+    std::array<Matrix34, 2> X;
+    Vector3 at;
+    Joint joint;
+
+    Turning(int first, bool is_ball)
+    {
+        Random random(7);
+        X = {random.rigid(), first == world ? world_configuration : random.rigid()};
+        at = random.vector();
+        JointFrame frame = joint_frame(X[1], X[0], at, {1, 0, 0});
+        frame.axis_second = joint_frame(X[1], X[0], at, {0, 1, 0}).axis_second;
+        TriadPair triads;
+        triads.second = transpose(directors(X[0])) * directors(X[1]);
+        joint = is_ball ? spherical("ball", first, 0, frame, {triads, "yxz"}, X[1], X[0])
+                        : universal("cross", first, 0, frame);
+    }
+    const NamedCoordinate& named(const std::string& name) const
+    {
+        for (const auto* all : {&joint.coordinates, &joint.readings})
+            for (const NamedCoordinate& one : *all)
+                if (one.name == name) return one;
+        throw std::logic_error(name);
+    }
+};
+
+/// Turned by half a radian to one and a half, and a little deformed.
+LoadCase turning_case(const std::string& type, const std::string& what, int first, bool is_ball,
+                      const char* coordinate, MakeAlong make)
+{
+    const Turning of(first, is_ball);
+    return {type, what,
+            [=](Random& random) {
+                return make(random, of.joint, of.named(coordinate), std::vector(of.X.begin(), of.X.end()));
+            },
+            [=](Random& random) {
+                std::array<Matrix34, 2> X = of.X;
+                const double angle = 1 + 0.5 * random.number();
+                const Matrix3 R = directors_from_rotation_vector(angle * (1 / std::sqrt(3.0)) *
+                                                                 Vector3{std::copysign(1, random.number()),
+                                                                         std::copysign(1, random.number()),
+                                                                         std::copysign(1, random.number())});
+                X[0] = configuration(of.at + R * (X[0].column(0) - of.at), R * directors(X[0]));
+                X[0] += 0.02 * random.matrix<3, 4>();
+                if (first != world) X[1] += 0.02 * random.matrix<3, 4>();
+                return X;
+            }};
+}
+
+Load any_ball_spring(Random& random, const Joint& joint, const NamedCoordinate&, const Configurations& X)
+{
+    return ball_spring("l", joint, 5 + 4 * random.number(), 2 + random.number(), X);
 }
 
 // Knots of tables stand outside of where bodies are: differences across one are not smooth.
@@ -353,6 +422,13 @@ const std::vector<LoadCase>& load_cases()
         spring_case("spring without free length", 1,
                     [](SpringDamper& law) { law.damping = law.free_length = 0; }),
         spring_case("damper", 1, [](SpringDamper& law) { law.stiffness = 0; }),
+        rope_case("rope over two bodies", {0, 1, 1, 0}, [](SpringDamper&) {}),
+        rope_case("rope over a body and the world", {world, 0, world},
+                  [](SpringDamper& law) { law.preload = 2; }),
+        rope_case("rope over three bodies and the world", {0, world, 1, 2, 1, 0}, [](SpringDamper&) {}),
+        rope_case("rope without a damper", {0, 1, 2, 3, 0}, [](SpringDamper& law) { law.damping = 0; }),
+        rope_case("rope by a law", {0, 1, world, 2},
+                  [](SpringDamper& law) { law.law = progressive_spring(0.3, 1e-3); }),
         along_case("joint_spring", "spring along a slide", 1, "displacement", any_joint_spring),
         along_case("joint_spring", "spring along a slide of the world", world, "displacement",
                    any_joint_spring),
@@ -360,6 +436,25 @@ const std::vector<LoadCase>& load_cases()
         along_case("joint_spring", "damper about an axis", 1, "angle", any_joint_damper),
         along_case("joint_spring", "limits of an angle", 1, "angle", limited_joint),
         along_case("joint_spring", "limits of a slide on the world", world, "displacement", limited_joint),
+        turning_case("joint_spring", "spring of a cross", 1, false, "angle_1", any_joint_spring),
+        turning_case("joint_spring", "spring of a cross on the world", world, false, "angle_2",
+                     any_joint_spring),
+        turning_case("joint_spring", "limits of a cross", 1, false, "angle_2", limited_joint),
+        turning_case("joint_spring", "spring of a ball, outer angle", 1, true, "angle_1", any_joint_spring),
+        turning_case("joint_spring", "spring of a ball, middle angle", 1, true, "angle_2", any_joint_spring),
+        turning_case("joint_spring", "damper of a ball on the world", world, true, "angle_2",
+                     any_joint_damper),
+        turning_case("joint_spring", "spring of a ball on the world", world, true, "angle_3",
+                     any_joint_spring),
+        turning_case("joint_spring", "spring along a rotation vector", 1, true, "rotation_vector_y",
+                     any_joint_spring),
+        turning_case("joint_spring", "spring along the angle of a rotation", 1, true, "rotation_angle",
+                     any_joint_spring),
+        turning_case("joint_spring", "limit of a ball on the world", world, true, "rotation_angle",
+                     limited_joint),
+        turning_case("bushing", "spring against all turns of a ball", 1, true, "angle_1", any_ball_spring),
+        turning_case("actuator", "motor of a cross", 1, false, "angle_1", any_actuator),
+        turning_case("actuator", "motor of a ball", 1, true, "angle_2", any_actuator),
         along_case("actuator", "motor", 1, "angle", any_actuator),
         along_case("actuator", "motor on the world", world, "angle", any_actuator),
         along_case("actuator", "cylinder", 1, "displacement", any_actuator),

@@ -12,6 +12,7 @@
 #include "livens/dynamics/rows/rank.h"
 #include "livens/dynamics/rows/rows.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/rotors.h"
 
 namespace livens {
 
@@ -28,12 +29,18 @@ std::vector<int> most_rows(const Model& acting, std::span<const State> places)
     return most;
 }
 
+std::optional<WithRotors> rotors_of_acting(const Model& model)
+{
+    return model.has_rotors() ? std::optional<WithRotors>(model) : std::nullopt;
+}
+
 }   // namespace
 
 /// The joints that act together, and what solves at an instant with them.
 struct Accelerations::Phase {
     Phase(const Model& all, double t, std::span<const State> places)
-        : acting(acting_at(all, t)), tables(acting.model, most_rows(acting.model, places)), instant(tables)
+        : acting(acting_at(all, t)), rotors(rotors_of_acting(acting.model)),
+          tables(whole(), most_rows(whole(), with_rotors(places))), instant(tables)
     {
         solved.resize(tables);
     }
@@ -42,7 +49,18 @@ struct Accelerations::Phase {
     [[gnu::visibility("hidden")]] bool accelerate(const State& state, const std::vector<double>& angles,
                                                   Side side);
 
+    /// Rotors stand behind bodies and rows of the model.
+    const Model& whole() const { return rotors ? rotors->model() : acting.model; }
+    std::vector<State> with_rotors(std::span<const State> places) const
+    {
+        std::vector<State> all(places.begin(), places.end());
+        for (State& place : all)
+            if (rotors) place = rotors->with(place);
+        return all;
+    }
+
     ActingModel acting;
+    std::optional<WithRotors> rotors;
     ModelTables tables;
     InstantSystem instant;
     InstantState solved;
@@ -57,6 +75,8 @@ struct Accelerations::Phase {
 /// that joints allow, to the order of the interpolation only. False: joints lose rank.
 bool Accelerations::Phase::settle(const State& state)
 {
+    if (rotors && state.X.size() == static_cast<std::size_t>(rotors->n_bodies()))
+        return settle(rotors->with(state));
     if (settled.t == state.t && settled.X == state.X && settled.V == state.V) return is_held;
     settled = state;
     accelerated.reset();
@@ -132,7 +152,7 @@ AcceleratedState Accelerations::at(const State& state, Side side) const
                      nan = std::numeric_limits<double>::quiet_NaN();
     const bool is_before = side == Side::left && state.t > motion_.start();
     Phase& phase = phase_at(is_before ? std::nextafter(state.t, -infinity) : state.t);
-    AcceleratedState all{state.X, state.V, state.X};
+    AcceleratedState all{state.X, state.V, state.X};   // of the model's bodies, which come first
     if (!phase.accelerate(state, turns_.at(state), side)) {
         for (Matrix34& A : all.A) std::fill_n(A.a, 12, nan);
         return all;

@@ -9,6 +9,7 @@
 #include "livens/diagnostics/detail/passed_balance.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
+#include "livens/multibody/rotors.h"
 #include "livens/time/quadrature.h"
 
 namespace livens {
@@ -27,7 +28,7 @@ class Integrands {
 public:
     Integrands(const Model& model, const Motion& motion, const Quadrature& rule)
         : model_(model), sampler_(motion, rule.points), X_(static_cast<std::size_t>(motion.n_bodies)),
-          V_(X_.size()), P_(X_.size()), turns_(model, motion), potential_(model)
+          V_(X_.size()), P_(X_.size()), turns_(model, motion), potential_(model), rotors_(rotors_of(model))
     {
         if (!sampler_.has_momenta()) return;
         for (const Body& body : model.bodies()) inverse_.push_back(inverse_mass(body.mass, body.is_point));
@@ -48,6 +49,9 @@ public:
             legendre += product;
             kinetic += 0.5 * (sampler_.has_momenta() ? dot(P_[b], P_[b] * inverse_[b]) : product);
         }
+        const double of_rotors = rotor_energy(rotors_, X_, V_);
+        kinetic += of_rotors;
+        legendre += 2 * of_rotors;
         const double potential = potential_.at(sampler_.instant(element, k), X_, V_, angles_);
         hamiltonian = kinetic + potential;
         // L = tr(P X'^T) - T* - V: with P = X' m this is T - V, as usual.
@@ -66,6 +70,7 @@ private:
     std::vector<Matrix34> X_, V_, P_;
     LoadTurns turns_;
     PotentialEnergy potential_;
+    std::vector<Rotor> rotors_;
     std::vector<double> angles_;
 };
 

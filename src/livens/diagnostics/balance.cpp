@@ -8,6 +8,7 @@
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
+#include "livens/multibody/rotors.h"
 #include "livens/solvers/patience.h"
 
 namespace livens {
@@ -31,11 +32,22 @@ double relative(double drift, double moving, double level)
     return drift <= rounding * level ? 0 : drift / std::max(moving, rounding * level);
 }
 
+struct StartOfBalance {
+    double potential = 0, energy = 0;
+    Vector3 linear_momentum{}, angular_momentum{};
+};
+
+/// Momenta of rotors on the world, which holds them.
+struct RotorSupport {
+    std::vector<Rotor> all;
+    RotorMomentum now, at_start;
+};
+
 /// Goes from element end to element end.
 class Balancing {
 public:
     Balancing(const Model& model, const Motion& motion, MotionPass& pass)
-        : model_(model), motion_(motion), pass_(pass), potential_(model),
+        : model_(model), motion_(motion), pass_(pass), potential_(model), rotors_{rotors_of(model), {}, {}},
           X_(static_cast<std::size_t>(motion.n_bodies))
     {}
 
@@ -91,7 +103,9 @@ private:
         piece.energy.push_back(kinetic + potential);
         piece.linear_momentum.push_back(linear_momentum(P));
         piece.angular_momentum.push_back(angular_momentum(X_, P));
+        if (!rotors_.all.empty()) rotors_.now = rotor_momentum(model_, rotors_.all, X_, V);
         if (end_ == 0) {
+            rotors_.at_start = rotors_.now;
             last_energy_ = kinetic + potential;
             start_ = {potential, last_energy_, piece.linear_momentum[0], piece.angular_momentum[0]};
         }
@@ -106,14 +120,17 @@ private:
     void append_supply(Balance& piece)
     {
         piece.work.push_back(total_.work);
-        piece.linear_impulse.push_back(total_.linear);
-        piece.angular_impulse.push_back(total_.angular);
+        // What turns rotors of joints to the world is theirs, and no momentum of bodies.
+        const Vector3 linear = total_.linear - (rotors_.now.linear - rotors_.at_start.linear),
+                      angular = total_.angular - (rotors_.now.angular - rotors_.at_start.angular);
+        piece.linear_impulse.push_back(linear);
+        piece.angular_impulse.push_back(angular);
         piece.energy_drift.push_back(std::abs(piece.energy.back() - start_.energy - total_.work));
         piece.linear_momentum_drift.push_back(
-            norm(piece.linear_momentum.back() - start_.linear_momentum - total_.linear));
+            norm(piece.linear_momentum.back() - start_.linear_momentum - linear));
         piece.angular_momentum_drift.push_back(
-            norm(piece.angular_momentum.back() - start_.angular_momentum - total_.angular));
-        raise_to(figures_.largest_impulse, norm(total_.linear));
+            norm(piece.angular_momentum.back() - start_.angular_momentum - angular));
+        raise_to(figures_.largest_impulse, norm(linear));
         raise_to(figures_.largest_energy_drift, piece.energy_drift.back());
         raise_to(figures_.largest_linear_momentum_drift, piece.linear_momentum_drift.back());
         raise_to(figures_.largest_angular_momentum_drift, piece.angular_momentum_drift.back());
@@ -135,13 +152,11 @@ private:
     const Motion& motion_;
     MotionPass& pass_;
     PotentialEnergy potential_;
+    RotorSupport rotors_;
     Supply total_;
     std::vector<Matrix34> X_;
     BalanceFigures figures_;   // references without what is integrated
-    struct {
-        double potential, energy;
-        Vector3 linear_momentum, angular_momentum;
-    } start_{};
+    StartOfBalance start_;
     double last_energy_ = 0, last_work_ = 0, risen_ = 0;   // at the end before
     int end_ = 0;
 };

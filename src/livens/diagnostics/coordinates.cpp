@@ -18,6 +18,9 @@ namespace livens {
 
 namespace {
 
+/// Of what positions do not tell: see is_known().
+constexpr double unknown_coordinate = std::numeric_limits<double>::quiet_NaN();
+
 std::vector<Matrix34> configurations(const Motion& motion, int element, int node)
 {
     const std::span<const double> X = motion.X.coefficient(element, node);
@@ -58,7 +61,7 @@ void FollowedCoordinates::turn(const double* X, std::span<double> near) const
     for (std::size_t i = 0; i < near.size(); ++i) {
         const SparseCoordinate& q = (*sparse_)[i];
         const double value = q.change(X);
-        near[i] = q.is_angle() ? turned_to(value, near[i]) : value;
+        near[i] = q.counts_turns() ? turned_to(value, near[i]) : value;
     }
 }
 
@@ -88,7 +91,9 @@ std::vector<CoordinateValue> FollowedCoordinates::at(const State& state,
     }
     const double *const X = state.X.data()->data(), *const V = state.V.data()->data();
     for (std::size_t i = 0; i < n; ++i) {
-        all[i] = {coordinates_[i].at_stated + values[i], (*sparse_)[i].rate(X, V)};
+        const bool is_known = (*sparse_)[i].is_known(X);
+        all[i] = {is_known ? coordinates_[i].at_stated + values[i] : unknown_coordinate,
+                  (*sparse_)[i].rate(X, V)};
         if (accelerated != nullptr)
             all[i].acceleration = (*sparse_)[i].acceleration(
                 accelerated->X.data()->data(), accelerated->V.data()->data(), accelerated->A.data()->data());

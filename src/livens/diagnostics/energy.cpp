@@ -5,15 +5,15 @@
 
 #include "livens/diagnostics/detail/passed_balance.h"
 #include "livens/diagnostics/diagnostics.h"
+#include "livens/multibody/rotors.h"
 
 namespace livens {
 
 double kinetic_energy(const Model& model, std::span<const Matrix34> X, std::span<const Matrix34> V)
 {
     assert(X.size() == V.size() && static_cast<int>(V.size()) == model.n_bodies());
-    static_cast<void>(
-        X);   // T does not depend on X in these coordinates (P7); the signature leaves room for it
-    double energy = 0;
+    // Of bodies T does not depend on X in these coordinates (P7); of rotors it does.
+    double energy = rotor_energy(rotors_of(model), X, V);
     for (int b = 0; b < model.n_bodies(); ++b) energy += 0.5 * dot(V[b] * model.bodies()[b].mass, V[b]);
     return energy;
 }

@@ -146,6 +146,7 @@ void Quantities::add_parts()
     for (int j = 0; has_reactions_ && j < std::ssize(model_.joints()); ++j) {
         add_reactions(j);
         const Joint& joint = model_.joints()[j];
+        if (!joint.over.empty()) add(QuantityOf::drive, j, joint.name, "tension", "N");
         if (joint.type != "drive") continue;
         if (const auto& effort = sources_->efforts[static_cast<std::size_t>(j)]) {
             const bool is_angle = effort->coordinate.is_angle();
@@ -278,9 +279,10 @@ void Quantities::put_joints(const State& state, Side side, std::span<const Named
             put(numbers, q, q.axes == world ? v : in_axes(state.X[q.axes], v));
         }
         if (q.of != QuantityOf::drive) continue;
-        numbers[static_cast<std::size_t>(q.first)] = q.what == "power"
-                                                         ? joint_power(joint, state.X, state.V, r)
-                                                         : sources_->efforts[j]->of(joint, state.X, r);
+        numbers[static_cast<std::size_t>(q.first)] =
+            q.what == "power"     ? joint_power(joint, state.X, state.V, r)
+            : q.what == "tension" ? rope_tension(joint, state.X, r)
+                                  : sources_->efforts[j]->of(joint, state.X, r);
     }
 }
 
@@ -318,7 +320,10 @@ std::optional<DriveEffort> drive_effort(const Joint& joint)
         return pair;
     };
     if (!row.label.starts_with("driven ") || row.drives.empty()) return {};
-    if (row.drives.size() == 1) return DriveEffort{{{static_cast<const PairForm&>(row)}}};
+    const bool is_angle = row.label.starts_with("driven angle");
+    if (row.drives.size() == 1)
+        return DriveEffort{{{static_cast<const PairForm&>(row)},
+                            is_angle ? CoordinateKind::arc_sine : CoordinateKind::displacement}};
     return DriveEffort{{{of_bodies(row.drives[1].form), of_bodies(row.drives[0].form)}}};
 }
 
@@ -341,6 +346,18 @@ double DriveEffort::of(const Joint& drive, std::span<const Matrix34> X, const Re
         gradient[k] = coordinate_rate(coordinate, X, V);
     }
     return dot(given, gradient) / dot(gradient, gradient);
+}
+
+/// The reaction is the tension times that of a unit tension, minus the gradient of the length.
+double rope_tension(const Joint& rope, std::span<const Matrix34> X, const Reaction& reaction)
+{
+    const Matrix34 G = constraint_gradient(rope.rows[0], X).of(rope.second);
+    const Reaction unit = joint_reaction(rope, X[static_cast<std::size_t>(rope.second)], -G);
+    const double arm = rope.rows[0].scale;   // torques count as forces at its length
+    const auto product = [&](const Reaction& a, const Reaction& b) {
+        return dot(a.force, b.force) + dot(a.torque, b.torque) / (arm * arm);
+    };
+    return product(reaction, unit) / product(unit, unit);
 }
 
 double joint_power(const Joint& joint, std::span<const Matrix34> X, std::span<const Matrix34> V,

@@ -105,6 +105,9 @@ struct DriveEffort {
 };
 /// Empty: the joint is no such drive.
 std::optional<DriveEffort> drive_effort(const Joint& joint);
+/// N: how much a rope pulls, of which the reaction on its second body is told; nan where its spans there pull
+/// against each other alone.
+double rope_tension(const Joint& rope, std::span<const Matrix34> X, const Reaction& reaction);
 /// W: what a joint does on both of its bodies.
 double joint_power(const Joint& joint, std::span<const Matrix34> X, std::span<const Matrix34> V,
                    const Reaction& reaction);

@@ -18,6 +18,7 @@
 #include "livens/dynamics/instant/reactions.h"
 #include "livens/dynamics/rows/row_tables.h"
 #include "livens/dynamics/rows/rows.h"
+#include "livens/multibody/rotors.h"
 #include "livens/multibody/unwrapped_angles.h"
 #include "livens/statics/small_motions.h"
 
@@ -42,6 +43,21 @@ void take_off_rows(const RowTables& rows, Instant at, std::span<const Matrix34> 
     }
 }
 
+/// rest -= a q'' dq/dX of inertias along coordinates.
+void take_off_rotors(const Model& model, Instant at, std::span<const Matrix34> X, std::span<const Matrix34> V,
+                     std::span<const Matrix34> A, std::vector<Matrix34>& rest)
+{
+    for (const Rotor& rotor : rotors_of(model)) {
+        const ConstraintRow row = coupling_row({{1, rotor.coordinate}}, 0, 1, "rotor");
+        const double force =
+            rotor.inertia * (coordinate_rate(rotor.coordinate, X, A) + constraint_curvature(row, at, X, V));
+        const RowGradient gradient = constraint_gradient(row, at, X);
+        for (int side = 0; side < gradient.bodies.size; ++side)
+            rest[static_cast<std::size_t>(gradient.bodies.bodies[static_cast<std::size_t>(side)])] -=
+                force * gradient.by[static_cast<std::size_t>(side)];
+    }
+}
+
 /// rest += F of loads.
 void add_loads(const Model& model, Instant at, std::span<const Matrix34> X, std::span<const Matrix34> V,
                std::span<const double> angles, std::vector<Matrix34>& rest)
@@ -50,9 +66,9 @@ void add_loads(const Model& model, Instant at, std::span<const Matrix34> X, std:
     const UnwrappedAngles turns(model);
     for (int l = 0; l < static_cast<int>(model.loads().size()); ++l) {
         const Load& load = model.loads()[l];
-        LoadForces F{};
+        LoadForces F(load.n_acted);
         load.forces(load_arguments(load, at, X, V, turns.of(l, angles)), F);
-        for (int b = 0; b < 2; ++b)
+        for (std::size_t b = 0; b < load.n_acted; ++b)
             if (load.bodies[b] != world) rest[static_cast<std::size_t>(load.bodies[b])] += F[b];
     }
 }
@@ -69,6 +85,7 @@ std::vector<Matrix34> forces_less_inertia(const Model& model, const RowTables& r
         rest.push_back(weight(model.bodies()[b], model.gravity()) - A[b] * model.bodies()[b].mass);
     add_loads(model, at, X, V, angles, rest);
     take_off_rows(rows, at, X, multipliers, rest);
+    take_off_rotors(model, at, X, V, A, rest);
     return rest;
 }
 
@@ -174,11 +191,15 @@ SideOfRigidity unbounded(std::size_t n)
 SideOfRigidity rigidity_on(const Model& model, const State& state, Side side)
 {
     const std::size_t n = model.bodies().size(), s = side == Side::left ? 0 : 1;
+    std::optional<WithRotors> rotors;
+    if (model.has_rotors()) rotors.emplace(model);
+    const Model& whole = rotors ? rotors->model() : model;
     std::optional<PreparedState> prepared;
     // Between nodes rows hold to the order of the interpolation only: the state is closed first.
-    const TriedStart tried = try_consistent_start(model, state, StartPolicy::project);
+    const TriedStart tried =
+        try_consistent_start(whole, rotors ? rotors->with(state) : state, StartPolicy::project);
     if (tried.closed)
-        prepared.emplace(model, *tried.closed, side, false);   // else the joints allow none near
+        prepared.emplace(whole, *tried.closed, side, false);   // else the joints allow none near
     if (!prepared || !prepared->is_fit || !are_numbers(prepared->state.multipliers[s])) return unbounded(n);
     const InstantState& at = prepared->state;
     std::vector<Matrix34> X(n), V(n), A(n);
@@ -191,7 +212,11 @@ SideOfRigidity rigidity_on(const Model& model, const State& state, Side side)
         A[b] = acceleration(X[b], twist, rates);
         V[b] = rate(X[b], {rates[0], rates[1], rates[2]}, {rates[3], rates[4], rates[5]});
     }
-    const UniqueReactions least = least_at(model, {state.t, side}, X, at.multipliers[s], at.held.rows);
+    std::vector<double> multipliers = at.multipliers[s];
+    multipliers.resize(static_cast<std::size_t>(model.n_rows()));
+    std::vector<int> rows = at.held.rows;
+    std::erase_if(rows, [&](int row) { return row >= model.n_rows(); });
+    const UniqueReactions least = least_at(model, {state.t, side}, X, multipliers, rows);
     return rigidity_of(model, RowTables(model, false), {{state.t, side}, X, V, A, at.angles},
                        least.multipliers, least.joint_is_unique);
 }

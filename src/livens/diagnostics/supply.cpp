@@ -132,9 +132,9 @@ void LoadSupply::add_load(int l, Instant at, Supply& now) const
 {
     const Load& load = model_.loads()[l];
     const LoadArguments now_at = arguments(l, at);
-    LoadForces F{};
+    LoadForces F(load.n_acted);
     load.forces(now_at, F);
-    for (int b = 0; b < 2; ++b)
+    for (std::size_t b = 0; b < load.n_acted; ++b)
         if (load.bodies[b] != world) now.add_force(now_at.X[b], F[b], model_.length());
     now.work += power_without_potential(load, now_at);
 }
@@ -159,9 +159,9 @@ Supply LoadSupply::all_stiffness(Instant at, double h) const
         const Load& load = model_.loads()[l];
         if (!load.depends_on_X && !load.depends_on_V) continue;
         const LoadArguments now = arguments(l, at);
-        LoadTangent tangent(load.bodies.size());
+        LoadTangent tangent(load.bodies.size(), load.n_acted);
         load.tangent(now, tangent);
-        for (int b = 0; b < 2; ++b) {
+        for (std::size_t b = 0; b < load.n_acted; ++b) {
             Matrix34 dF{};
             for (std::size_t c = 0; c < load.bodies.size(); ++c)
                 for (int j = 0; j < 12; ++j) {

@@ -15,9 +15,10 @@ namespace [[gnu::visibility("default")]] livens {
 struct Body {
     std::string name;
     bool is_point = false;
-    Matrix4 mass{};   ///< m (P7)
-    Matrix34 X{};     ///< configuration at the start
-    Matrix34 V{};     ///< dX/dt at the start
+    bool is_rotor = false;   ///< a point mass that stands for inertias along coordinates, see WithRotors
+    Matrix4 mass{};          ///< m (P7)
+    Matrix34 X{};            ///< configuration at the start
+    Matrix34 V{};            ///< dX/dt at the start
     /// The directors as the user counts them are [d1 d2 d3] stretch: symmetric, the identity unless they are
     /// skew (P4). X, m and all places on the body are in the orthonormal triad.
     Matrix3 stretch = identity<3>();
@@ -55,4 +56,4 @@ Matrix3 project_directors(const Matrix3& directors);
 Matrix34 rate(const Matrix34& X, const Vector3& velocity, const Vector3& angular_velocity);
 Vector3 angular_velocity(const Matrix34& X, const Matrix34& V);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

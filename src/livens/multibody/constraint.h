@@ -47,7 +47,7 @@ struct Drive {
 
 /// A smooth function of a few numbers q, which are forms; see joint_coordinates.h.
 struct SmoothFunction {
-    static constexpr std::size_t most = 3;
+    static constexpr std::size_t most = 4;
     using Point = std::array<double, most>;
     struct Value {
         double value = 0;
@@ -74,6 +74,13 @@ struct FunctionGuard {
     std::function<double(const SmoothFunction::Point& q)> value;
 };
 
+/// Where a function ends, for messages: the margin is positive where it has values.
+struct FunctionEdge {
+    std::function<double(const SmoothFunction::Point& q)> margin;
+    double size;        ///< of what a margin is measured by
+    std::string what;   ///< happens where it is zero: "the law of 'cam' ends"
+};
+
 /// One scalar constraint, Phi(t, X) = form + sum_k f_k(t) form_k + sum_m F_m(q_1, ..): a quadratic form,
 /// whose C, B and c may depend on time, and smooth functions of forms q, which may have bodies of their own.
 /// Each function is of few forms, so that a row of many coordinates costs as much as its terms.
@@ -83,6 +90,7 @@ struct ConstraintRow : PairForm {
     std::vector<Drive> drives{};               ///< on the bodies of the form
     std::vector<PairForm> coordinates{};       ///< q of F_1, then those of F_2, ..
     std::vector<SmoothFunction> functions{};   ///< F_m
+    std::vector<FunctionEdge> edges{};         ///< of as many of the functions, the first ones
     double period =
         0;   ///< Phi is known up to whole multiples of it, and is the one nearest to 0; 0: it is known
     std::optional<FunctionGuard> guard{};   ///< of F_1; one row of a joint has it for all

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Angles, displacements and curves as coordinates of joints, and rows that are functions of them: screws,
-// gears, racks, slots. theory.md, "Coordinates of joints", has the derivatives and how turns are counted.
+// Angles and displacements as coordinates of joints. theory.md, "Coordinates of joints", has the derivatives
+// and how turns are counted.
 #include "livens/multibody/joint_coordinates.h"
 
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <utility>
 
 #include "livens/base/elementary.h"
-#include "livens/base/error.h"
-#include "livens/base/text.h"
+#include "livens/multibody/loads/rotation_vector.h"
 
 namespace livens {
 
@@ -19,29 +17,16 @@ namespace {
 using Point = SmoothFunction::Point;
 using Value = SmoothFunction::Value;
 
-/// A row of functions of forms, on the bodies of the first.
-ConstraintRow row_of(std::vector<PairForm> coordinates, std::vector<SmoothFunction> functions, double scale,
-                     const std::string& label)
-{
-    ConstraintRow row;
-    row.body_i = coordinates.front().body_i;
-    row.body_j = coordinates.front().body_j;
-    row.scale = scale;
-    row.label = label;
-    row.coordinates = std::move(coordinates);
-    row.functions = std::move(functions);
-    return row;
-}
-
-[[noreturn]] void refuse(const char* code, const std::string& message, const std::string& value,
-                         const std::string& bound, const std::string& note, const std::string& help)
-{
-    throw InputError({code, "", message, value, bound, note, help});
-}
-
-double value_of(const PairForm& form, std::span<const Matrix34> X)
+double form_at(const PairForm& form, const Configurations& X)
 {
     return form_value(form, form.body_i, form.body_j, X);
+}
+
+Point point_of(const JointCoordinate& q, const Configurations& X)
+{
+    Point at{};
+    for (std::size_t k = 0; k < q.forms.size(); ++k) at[k] = form_at(q.forms[k], X);
+    return at;
 }
 
 double rate_of(const PairForm& form, std::span<const Matrix34> X, std::span<const Matrix34> V)
@@ -53,25 +38,6 @@ double rate_of(const PairForm& form, std::span<const Matrix34> X, std::span<cons
     for (int side = 0; side < gradient.bodies.size; ++side)
         rate += dot(gradient.by[side], V[gradient.bodies.bodies[side]]);
     return rate;
-}
-
-// --- couplings
-
-/// The largest number of which the factors of all angles are whole multiples, by Euclid's algorithm; 0: none
-/// of at most 10,000 parts.
-double common_measure(const std::vector<CoupledCoordinate>& terms)
-{
-    constexpr double rounding = 1e-11;   // of the largest factor: what decimals of a ratio leave
-    double measure = 0, largest = 0;
-    for (const auto& [factor, coordinate] : terms) {
-        if (!coordinate.is_angle()) continue;
-        double rest = std::abs(factor);
-        largest = std::max(largest, rest);
-        // Remainders of Euclid's algorithm: what is left below rounding counts as zero.
-        while (rest > rounding * largest)
-            measure = std::exchange(rest, std::abs(std::remainder(measure, rest)));
-    }
-    return measure * 10000.5 >= largest ? measure : 0;   // by half a part for rounding
 }
 
 Value angle_at(double factor, double c, double s)
@@ -88,126 +54,84 @@ Value angle_at(double factor, double c, double s)
     return angle;
 }
 
-/// Angles take the shorter way round.
-SmoothFunction multiple_of_angle(double factor)
+Value displacement_at(double factor, double q)
 {
-    return {[factor](const Point& q) { return angle_at(factor, q[0], q[1]); },
-            [factor](const Point& q, std::span<const Point> steps, std::span<Value> out) {
-                for (std::size_t i = 0; i < steps.size(); ++i) {
-                    const double c = q[0] + steps[i][0], s = q[1] + steps[i][1];
-                    out[i] = angle_at(factor, c, s);
-                    // The angle between two directions by their cross and inner product: no difference of two
-                    // angles, so no cut and no cancellation.
-                    out[i].value =
-                        factor * arc_tangent(q[0] * steps[i][1] - q[1] * steps[i][0], q[0] * c + q[1] * s);
-                }
-            },
-            2};
-}
-
-SmoothFunction multiple(double factor)
-{
-    const auto at = [factor](double q) {
-        Value value;
-        value.value = factor * q;
-        value.gradient[0] = factor;
-        return value;
-    };
-    return {[at](const Point& q) { return at(q[0]); },
-            [at](const Point&, std::span<const Point> steps, std::span<Value> out) {
-                for (std::size_t i = 0; i < steps.size(); ++i) out[i] = at(steps[i][0]);
-            }};
-}
-
-// --- curves
-
-constexpr int n_samples = 256, few = 16;
-
-/// A curve with samples from which nearest points are sought.
-struct SampledCurve : Curve {
-    std::vector<Vector3> samples;   ///< at first + k step
-    double longest = 0;             ///< from one to the next
-
-    explicit SampledCurve(const Curve& curve) : Curve(curve)
-    {
-        if (!without_normals) without_normals = at;
-        for (int k = 0; k <= n_samples; ++k) samples.push_back(without_normals(first + k * step()).x);
-        for (int k = 0; k < n_samples; ++k) longest = std::max(longest, norm(samples[k + 1] - samples[k]));
-        refuse_crossings();
-    }
-
-    double step() const { return (last - first) / n_samples; }
-
-    /// The parameter of the point nearest to x, from a parameter near it.
-    double nearest(const Vector3& x, double s) const
-    {
-        for (int i = 0; i < 50; ++i) {
-            const CurvePoint here = without_normals(s);
-            const Vector3 r = x - here.x;
-            // Newton's iteration for r . gamma' = 0, steps bounded by four samples so that it stays on its
-            // branch.
-            const double slope = dot(here.first, here.first) - dot(r, here.second);
-            // beyond the centre of curvature the distance has no minimum: along the tangent then
-            const double change = dot(r, here.first) / (slope > 0 ? slope : dot(here.first, here.first));
-            s += std::clamp(change, -4 * step(), 4 * step());
-            if (!(std::abs(change) > 1e-15 * (std::abs(s) + step()))) break;
-        }
-        return s;
-    }
-
-    double nearest(const Vector3& x) const
-    {
-        int best = 0;
-        double least = norm(x - samples[0]);
-        const auto look = [&](int k) {
-            const double distance = norm(x - samples[k]);
-            if (distance < least || (distance == least && k < best)) best = k, least = distance;
-            return distance;
-        };
-        for (int k = few; k <= n_samples; k += few) look(k);
-        // none that is nearer lies between here and as many samples on as the longest way from one to the
-        // next goes into what this one is farther
-        for (int k = 1; k <= n_samples;) {
-            const double farther = (look(k) - least) / longest;   // no number: one on
-            k += farther > 1 ? 1 + static_cast<int>(std::min<double>(farther, n_samples)) : 1;
-        }
-        return nearest(x, first + best * step());
-    }
-
-private:
-    void refuse_crossings() const
-    {
-        // Neighbouring samples are near each other on every curve; only those further along may be a
-        // crossing.
-        constexpr int apart = 8;
-        for (int k = 0; k < n_samples; ++k)
-            for (int l = k + apart; l < n_samples; ++l) {
-                if (is_closed && k + n_samples - l < apart) continue;
-                if (norm(samples[k] - samples[l]) > norm(samples[k + 1] - samples[k])) continue;
-                refuse("curve-crosses-itself", "the curve crosses itself, or nearly",
-                       "at the parameters " + to_text(first + k * step(), 6) + " and " +
-                           to_text(first + l * step(), 6),
-                       "", "a point there would be on two branches", "divide the curve, or round it");
-            }
-    }
-};
-
-Vector3 place_of(const Point& q) { return {q[0], q[1], q[2]}; }
-
-/// d n / ds = -(n . gamma'') / |gamma'|^2 gamma' and ds/dx = gamma' / (|gamma'|^2 - r . gamma'').
-Value across_curve(const SampledCurve& curve, std::size_t normal, const Vector3& x, double s)
-{
-    const CurvePoint here = curve.at(s);
-    const Vector3 r = x - here.x, n = here.normals[normal];
-    const double square = dot(here.first, here.first);
-    const double bend = -dot(n, here.second) / (square * (square - dot(r, here.second)));
     Value value;
-    value.value = dot(n, r);
-    for (int i = 0; i < 3; ++i) {
-        value.gradient[i] = n[i];
-        for (int j = 0; j < 3; ++j) value.hessian[i][j] = bend * here.first[i] * here.first[j];
-    }
+    value.value = factor * q;
+    value.gradient[0] = factor;
     return value;
+}
+
+Value arc_sine_at(double s)
+{
+    const double square = (1 - s) * (1 + s), c = std::sqrt(square);
+    Value angle;
+    angle.value = arc_sine(s);
+    angle.gradient[0] = 1 / c;
+    angle.hessian[0][0] = s / (square * c);
+    return angle;
+}
+
+Value rotation_component_at(const Point& q)
+{
+    const Turn turn = turn_of(q.data());
+    Value r;
+    r.value = turn.r[0].value;
+    for (std::size_t i = 0; i < 4; ++i) {
+        r.gradient[i] = turn.J[0][i].value;
+        for (std::size_t j = 0; j < 4; ++j) r.hessian[i][j] = turn.J[0][i].by[j];
+    }
+    return r;
+}
+
+/// atan2(S, c) with S = |s|; nothing has a direction where s is zero, and its derivatives are taken as zero.
+Value rotation_angle_at(const Point& q)
+{
+    const double S = hypotenuse(q[0], q[1], q[2]), c = q[3], square = S * S + c * c,
+                 quartic = square * square;
+    Value angle;
+    angle.value = arc_tangent(S, c);
+    angle.gradient[3] = -S / square;
+    angle.hessian[3][3] = 2 * c * S / quartic;
+    if (S == 0) return angle;
+    const double by_S = c / square, by_S_S = -2 * c * S / quartic, by_S_c = (S * S - c * c) / quartic;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double n = q[k] / S;
+        angle.gradient[k] = by_S * n;
+        angle.hessian[k][3] = angle.hessian[3][k] = by_S_c * n;
+        for (std::size_t l = 0; l < 3; ++l)
+            angle.hessian[k][l] = by_S_S * n * q[l] / S + by_S / S * ((k == l ? 1 : 0) - n * q[l] / S);
+    }
+    return angle;
+}
+
+/// factor (X a) . (Y b)
+PairForm product_of(int first, const Vector3& a, int second, const Vector3& b, double factor)
+{
+    return inner_product_row(first, direction(factor * a), second, direction(b), 0, 1);
+}
+
+PairForm sum_of(PairForm form, const PairForm& more)
+{
+    form.c_ij += more.c_ij;   // products of two directions: of the world they are in b_j alone
+    form.b_j += more.b_j;
+    return form;
+}
+
+/// s1, s2, s3, the sine times the axis of the turn between two triads, and c, its cosine.
+std::array<PairForm, 4> sine_and_cosine(int first, int second, const TriadPair& triads)
+{
+    const auto product = [&](int k, int l, double factor) {
+        return product_of(first, triads.first.column(k), second, triads.second.column(l), factor);
+    };
+    std::array<PairForm, 4> forms;
+    for (int k = 0; k < 3; ++k) {
+        const int l = (k + 1) % 3, m = (k + 2) % 3;
+        forms[static_cast<std::size_t>(k)] = sum_of(product(m, l, 0.5), product(l, m, -0.5));
+    }
+    forms[3] = sum_of(sum_of(product(0, 0, 0.5), product(1, 1, 0.5)), product(2, 2, 0.5));
+    forms[3].c -= 0.5;
+    return forms;
 }
 
 }   // namespace
@@ -226,35 +150,97 @@ JointCoordinate angle_between(int body_i, const Vector4& a1, const Vector4& a2, 
 JointCoordinate turn_between(int body_i, const Vector4& a1, const Vector4& a2, int body_j, const Vector4& b1,
                              const Vector4& b2)
 {
-    const auto sum = [](PairForm form, const PairForm& other, double sign) {
-        form.c_ij += sign * other.c_ij;   // products of two directions: of the world they are in b_j alone
-        form.b_j += sign * other.b_j;
-        return form;
-    };
     const JointCoordinate one = angle_between(body_i, a1, a2, body_j, b1),
-                          two = angle_between(body_i, a1, a2, body_j, b2);
-    return {{sum(one.forms[0], two.forms[1], 1), sum(one.forms[1], two.forms[0], -1)}};
+                          two = angle_between(body_i, -a1, a2, body_j, b2);
+    return {{sum_of(one.forms[0], two.forms[1]), sum_of(one.forms[1], two.forms[0])}};
 }
 
-double coordinate_value(const JointCoordinate& q, std::span<const Matrix34> X)
+/// With R = R_i(a) R_j(b) R_k(c) and e = 1 for i, j, k as x, y, z go round, else -1: R_ik = e sin b,
+/// R_jk = -e sin a cos b, R_kk = cos a cos b, R_ij = -e cos b sin c, R_ii = cos b cos c.
+std::array<JointCoordinate, 3> angles_of_turn(int first, int second, const TriadPair& triads,
+                                              const std::array<int, 3>& sequence)
 {
-    return q.is_angle() ? arc_tangent(value_of(q.forms[1], X), value_of(q.forms[0], X))
-                        : value_of(q.forms[0], X);
+    const auto [i, j, k] = sequence;
+    const double e = (i + 1) % 3 == j ? 1 : -1;
+    const auto R = [&](int row, int column, double factor) {
+        return product_of(first, triads.first.column(row), second, triads.second.column(column), factor);
+    };
+    return {JointCoordinate{{R(k, k, 1), R(j, k, -e)}, CoordinateKind::outer_angle},
+            JointCoordinate{{R(i, k, e)}, CoordinateKind::arc_sine},
+            JointCoordinate{{R(i, i, 1), R(i, j, -e)}, CoordinateKind::outer_angle}};
+}
+
+JointCoordinate rotation_component(int first, int second, const TriadPair& triads, int k)
+{
+    const std::array<PairForm, 4> forms = sine_and_cosine(first, second, triads);
+    const auto at = [&](int i) { return forms[static_cast<std::size_t>(i % 3)]; };
+    return {{at(k), at(k + 1), at(k + 2), forms[3]}, CoordinateKind::rotation_component};
+}
+
+JointCoordinate rotation_angle(int first, int second, const TriadPair& triads)
+{
+    const std::array<PairForm, 4> forms = sine_and_cosine(first, second, triads);
+    return {{forms.begin(), forms.end()}, CoordinateKind::rotation_angle};
+}
+
+SmoothFunction::Value coordinate_at(CoordinateKind kind, const Point& q)
+{
+    switch (kind) {
+    case CoordinateKind::displacement:
+        return displacement_at(1, q[0]);
+    case CoordinateKind::angle:
+    case CoordinateKind::outer_angle:
+        return angle_at(1, q[0], q[1]);
+    case CoordinateKind::arc_sine:
+        return arc_sine_at(q[0]);
+    case CoordinateKind::rotation_component:
+        return rotation_component_at(q);
+    case CoordinateKind::rotation_angle:
+        break;
+    }
+    return rotation_angle_at(q);
+}
+
+bool is_known(CoordinateKind kind, const Point& q)
+{
+    constexpr double least_square = 1e-4;   // of a cosine: 0.6 degrees
+    constexpr double least_angle = 3.05;    // of half a turn all but 5 degrees
+    switch (kind) {
+    case CoordinateKind::displacement:
+    case CoordinateKind::angle:
+        return true;
+    case CoordinateKind::outer_angle:
+        return q[0] * q[0] + q[1] * q[1] >= least_square;
+    case CoordinateKind::arc_sine:
+        return (1 - q[0]) * (1 + q[0]) >= least_square;
+    case CoordinateKind::rotation_component:
+    case CoordinateKind::rotation_angle:
+        break;
+    }
+    return rotation_angle_at(q).value <= least_angle;
+}
+
+bool is_known(const JointCoordinate& q, const Configurations& X) { return is_known(q.kind, point_of(q, X)); }
+
+double coordinate_value(const JointCoordinate& q, const Configurations& X)
+{
+    return coordinate_at(q.kind, point_of(q, X)).value;
 }
 
 double coordinate_rate(const JointCoordinate& q, std::span<const Matrix34> X, std::span<const Matrix34> V)
 {
-    if (!q.is_angle()) return rate_of(q.forms[0], X, V);
-    const double c = value_of(q.forms[0], X), s = value_of(q.forms[1], X);
-    return (c * rate_of(q.forms[1], X, V) - s * rate_of(q.forms[0], X, V)) / (c * c + s * s);
+    const Value at = coordinate_at(q.kind, point_of(q, X));
+    double rate = 0;
+    for (std::size_t k = 0; k < q.forms.size(); ++k) rate += at.gradient[k] * rate_of(q.forms[k], X, V);
+    return rate;
 }
 
 double coordinate_change(const JointCoordinate& q, std::span<const Matrix34> from,
                          std::span<const Matrix34> to)
 {
-    if (!q.is_angle()) return value_of(q.forms[0], to) - value_of(q.forms[0], from);
-    const double c0 = value_of(q.forms[0], from), s0 = value_of(q.forms[1], from);
-    const double c = value_of(q.forms[0], to), s = value_of(q.forms[1], to);
+    if (!q.counts_turns()) return coordinate_value(q, to) - coordinate_value(q, from);
+    const double c0 = form_at(q.forms[0], from), s0 = form_at(q.forms[1], from);
+    const double c = form_at(q.forms[0], to), s = form_at(q.forms[1], to);
     return arc_tangent(c0 * s - s0 * c, c0 * c + s0 * s);
 }
 
@@ -262,68 +248,6 @@ double turned_to(double angle, double near)
 {
     constexpr double turn = 2 * std::numbers::pi;
     return angle + turn * std::round((near - angle) / turn);
-}
-
-ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& terms, double constant, double scale,
-                           const std::string& label)
-{
-    std::vector<PairForm> forms;
-    std::vector<SmoothFunction> functions;
-    bool has_angles = false;
-    for (const auto& [factor, coordinate] : terms) {
-        if (!std::isfinite(factor) || factor == 0)
-            refuse("joint-row", "the factor of a coordinate must be finite and not zero", to_text(factor), "",
-                   "", "");
-        forms.insert(forms.end(), coordinate.forms.begin(), coordinate.forms.end());
-        functions.push_back(coordinate.is_angle() ? multiple_of_angle(factor) : multiple(factor));
-        has_angles = has_angles || coordinate.is_angle();
-    }
-    if (forms.empty()) refuse("joint-row", "a row couples at least one coordinate", "", "", "", "");
-    // After a whole turn of every angle the bodies stand as before; all the multiples of this period are one
-    // position. It exists only for ratios of whole numbers: each angle is known up to whole turns.
-    const double measure = common_measure(terms);
-    if (has_angles && measure == 0)
-        refuse("gear-ratio", "the angles of a coupling turn in no ratio of whole numbers up to 10000", "", "",
-               "after one turn of one wheel the other would stand where no tooth is, so positions do not "
-               "tell whether the constraint holds",
-               "give the ratio of two numbers of teeth");
-    ConstraintRow row = row_of(std::move(forms), std::move(functions), scale, label);
-    row.period = 2 * std::numbers::pi * measure;
-    row.c = -constant;
-    return row;
-}
-
-std::vector<ConstraintRow> curve_rows(const Curve& curve, int body_i, int body_j, const Vector4& b,
-                                      double scale)
-{
-    const auto sampled = std::make_shared<const SampledCurve>(curve);
-    std::vector<PairForm> place;
-    for (int k = 0; k < 3; ++k) {
-        Vector3 e{};
-        e[k] = 1;
-        place.push_back(plane_row(body_i, direction(e), point({}), body_j, b, 0, 1));
-    }
-    std::vector<ConstraintRow> rows;
-    for (std::size_t k = 0; k < 2; ++k) {
-        const auto at = [sampled, k](const Point& q) {
-            return across_curve(*sampled, k, place_of(q), sampled->nearest(place_of(q)));
-        };
-        const auto moved = [sampled, k](const Point& q, std::span<const Point> steps, std::span<Value> out) {
-            const Vector3 from = place_of(q);
-            const double s = sampled->nearest(from), before = across_curve(*sampled, k, from, s).value;
-            for (std::size_t i = 0; i < steps.size(); ++i) {
-                const Vector3 to = from + place_of(steps[i]);
-                out[i] = across_curve(*sampled, k, to, sampled->nearest(to, s));
-                out[i].value -= before;
-            }
-        };
-        rows.push_back(
-            row_of(place, {{at, moved, 3}}, scale, k == 0 ? "curve, normal 1" : "curve, normal 2"));
-    }
-    if (!curve.knots.empty())
-        rows[0].guard = {{curve.knots, curve.is_closed ? curve.last - curve.first : 0},
-                         [sampled](const Point& q) { return sampled->nearest(place_of(q)); }};
-    return rows;
 }
 
 }   // namespace livens

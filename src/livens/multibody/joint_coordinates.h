@@ -3,7 +3,10 @@
 // round, screws, gears, racks, and points on curves.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,18 +15,34 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
-/// One form, a displacement; or two, which are cosine and sine of an angle up to a common factor.
+/// What a coordinate is of its forms q.
+enum class CoordinateKind : std::uint8_t {
+    displacement,         ///< q_1, m
+    angle,                ///< atan2(q_2, q_1), with a common factor of both; turns are counted
+    outer_angle,          ///< the same where the factor may vanish: the first and the third of three angles
+    arc_sine,             ///< asin(q_1), up to a quarter turn: the second of three angles
+    rotation_component,   ///< component of a rotation vector, up to half a turn: see rotation_component()
+    rotation_angle        ///< its length, likewise
+};
+
+/// Of forms alone one is a displacement, two are an angle.
 struct JointCoordinate {
     std::vector<PairForm> forms;
+    CoordinateKind kind = forms.size() == 2 ? CoordinateKind::angle : CoordinateKind::displacement;
 
-    bool is_angle() const { return forms.size() == 2; }
+    /// It is measured in rad.
+    bool is_angle() const { return kind != CoordinateKind::displacement; }
+    /// Positions tell it up to whole turns, which are counted by whoever follows a motion, each the shorter
+    /// way: unwrapped_angles.h has those of loads. The others are what positions tell, or nothing, as
+    /// is_known() says below.
+    bool counts_turns() const { return kind == CoordinateKind::angle || kind == CoordinateKind::outer_angle; }
 };
 
 /// A coordinate of a joint: how far its second body is from its first, as the maker of the joint was told
 /// them, right-handed about the axis. Turns are counted from where the
 /// model has its bodies.
 struct NamedCoordinate {
-    std::string name;   ///< "angle" (rad) or "displacement" (m)
+    std::string name;   ///< "angle", "angle_1" (rad) or "displacement" (m)
     JointCoordinate coordinate;
     double at_stated = 0;   ///< what it is said to be where the model has its bodies
     /// The same while the joint holds, and what takes its place in a joint that does not always
@@ -31,6 +50,12 @@ struct NamedCoordinate {
     /// to axis is taken off, so that no direction across the axis matters, which nobody stated. Empty:
     /// nothing else is needed.
     JointCoordinate apart{};
+
+    /// One of several angles of a joint: where coordinates are chosen among many, those of joints that turn
+    /// about one axis and slide along one come first, as the legs of a platform before the crosses at their
+    /// ends.
+    bool is_numbered() const { return name.starts_with("angle_"); }
+    double rotor_inertia = 0;   ///< adds 1/2 of it times the square of the rate to the kinetic energy
 };
 
 /// (X_i n) . (X_j b - X_i a): how far the point b of body j is beyond the point a of body i along the
@@ -46,8 +71,29 @@ JointCoordinate angle_between(int body_i, const Vector4& a1, const Vector4& a2, 
 JointCoordinate turn_between(int body_i, const Vector4& a1, const Vector4& a2, int body_j, const Vector4& b1,
                              const Vector4& b2);
 
+/// Two triads, the columns of both matrices, one on each body.
+struct TriadPair {
+    Matrix3 first = identity<3>(), second = identity<3>();
+};
+/// The three angles of the turn R = A^T B from the first triad A to the second B, about axes i, j and k of
+/// it: R = R_i(angle 1) R_j(angle 2) R_k(angle 3), where i, j, k are 0, 1, 2 in any order. The second angle
+/// stays within a quarter turn; where it gets there, the others are one.
+std::array<JointCoordinate, 3> angles_of_turn(int first, int second, const TriadPair& triads,
+                                              const std::array<int, 3>& sequence);
+/// Component k of the rotation vector of that turn, in axes of either triad: 0, 1, 2; and its length. Forms
+/// of the latter are s1, s2, s3 and c: the sine of the turn times its axis, and its cosine.
+JointCoordinate rotation_component(int first, int second, const TriadPair& triads, int k);
+JointCoordinate rotation_angle(int first, int second, const TriadPair& triads);
+
+/// A coordinate as a function of its forms.
+SmoothFunction::Value coordinate_at(CoordinateKind kind, const SmoothFunction::Point& forms);
+/// Whether the forms tell it: no angle is near where it is not unique, by 0.6 degrees of a quarter turn, or
+/// by 5 degrees of half a turn.
+bool is_known(CoordinateKind kind, const SmoothFunction::Point& forms);
+bool is_known(const JointCoordinate& coordinate, const Configurations& X);
+
 /// A coordinate in one configuration: an angle from -pi to pi, with no turns.
-double coordinate_value(const JointCoordinate& coordinate, std::span<const Matrix34> X);
+double coordinate_value(const JointCoordinate& coordinate, const Configurations& X);
 /// Its rate, linear in V.
 double coordinate_rate(const JointCoordinate& coordinate, std::span<const Matrix34> X,
                        std::span<const Matrix34> V);
@@ -64,6 +110,24 @@ struct CoupledCoordinate {
     JointCoordinate coordinate;
 };
 
+/// A smooth law of one coordinate q: a function with two continuous derivatives by it.
+struct CoordinateLaw {
+    TimeFunction at;   ///< of q, as functions of time are of t
+    /// Where it is known, and a motion ends; of a law with a period, one round.
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    double period = 0;   ///< after which it begins again, `rise` higher; 0: it does not
+    double rise = 0;
+    std::vector<double> knots{};   ///< where its third derivative jumps, ascending; of one round
+};
+/// A law and what it is of.
+struct CoupledLaw {
+    CoordinateLaw law;
+    JointCoordinate coordinate;
+    double shift = 0;   ///< what the law's q is more than the forms say
+    std::string what;   ///< FunctionEdge::what
+};
+
 /// sum_k factor_k coordinate_k = constant, up to whole turns: a screw (displacement and -pitch / (2 pi) times
 /// angle), a gear pair (two angles), a rack (displacement and angle), a differential (three angles).
 ///
@@ -71,10 +135,13 @@ struct CoupledCoordinate {
 /// n_k of one number u, as teeth are, it need not: the row is known up to multiples of 2 pi u, of which the
 /// value takes the nearest, and the solver follows it through time without a jump.
 ///
+/// With a law, sum_k factor_k coordinate_k - law(q) = constant. Of an angle the law knows all turns if it has
+/// a period, of which a turn is a whole multiple; else those next to the middle between low and high.
+///
 /// Throws InputError: `gear-ratio` for factors without a common measure of at most 10,000 parts; `joint-row`
 /// for no coordinate, a factor that is zero or not finite.
 ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& terms, double constant, double scale,
-                           const std::string& label);
+                           const std::string& label, const CoupledLaw* law = nullptr);
 
 /// A curve at a parameter: place, its two derivatives, and two unit normals that do not turn about the
 /// tangent as they go along (each n' is parallel to the tangent; for a plane curve, the normal in the plane

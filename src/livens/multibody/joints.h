@@ -10,14 +10,23 @@
 #include "livens/base/linear.h"
 #include "livens/multibody/constraint.h"
 #include "livens/multibody/joint_coordinates.h"
+#include "livens/multibody/rope.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+/// Lines that joints follow, to be drawn.
+struct JointLine {
+    /// Of a slot: points of its whole curve in coordinates of `first`, in order.
+    std::vector<Vector3> path{};
+    /// Of a rope: the points that it runs over.
+    std::vector<BodyPoint> over{};
+};
 
 /// A joint between `first` (a body or the world) and `second` (a body). A new kind of joint is a new function
 /// that fills in rows; nothing else in livens asks for the kind.
 ///
 /// Reactions are what the joint exerts on `second`, at `point_second`, in world axes.
-struct Joint {
+struct Joint : JointLine {
     std::string name;
     std::string type;   ///< "revolute", ...; for messages and files
     int first = world;
@@ -33,11 +42,13 @@ struct Joint {
     /// Functions that must be positive at assembly, where rows alone would admit another branch.
     std::vector<ConstraintRow> branches{};
     std::vector<NamedCoordinate> coordinates{};
+    /// What is only read of it, beside its coordinates: the rotation vector of a ball joint.
+    std::vector<NamedCoordinate> readings{};
+    /// Of a ball joint with readings, in coordinates of `first` and `second`.
+    TriadPair triads{};
     /// It acts from one instant until another (s), which are events of the motion.
     double from = -std::numeric_limits<double>::infinity();
     double until = std::numeric_limits<double>::infinity();
-    /// Of a slot: points of its whole curve in coordinates of `first`, in order, to be drawn.
-    std::vector<Vector3> path{};
 
     bool acts_at(double t) const { return from <= t && t < until; }
 };
@@ -79,7 +90,9 @@ Joint screw(const std::string& name, int first, int second, const JointFrame& fr
             const Matrix34& X_second, double pitch, double scale = 1);
 /// Two planes that stay in one, their common normal the axis. 3 rows. Coordinate: angle.
 Joint planar(const std::string& name, int first, int second, const JointFrame& frame, double scale = 1);
-/// Two perpendicular axes, one fixed in each body, and a common point. 4 rows.
+/// Two perpendicular axes, one fixed in each body, and a common point. 4 rows. Coordinates: angle_1, of the
+/// cross about the axis on the first body against this body, and angle_2, of the second body about its axis
+/// against the cross.
 Joint universal(const std::string& name, int first, int second, const JointFrame& frame, double scale = 1);
 /// Two shafts, along the axes, that meet in a point and turn equally, however they are bent. Where they
 /// stand now, one bend of the second takes it there. 4 rows. Throws InputError `joint-bend` for shafts that
@@ -88,6 +101,16 @@ Joint constant_velocity(const std::string& name, int first, int second, const Jo
                         const Matrix34& X_first, const Matrix34& X_second, double scale = 1);
 /// A common point. 3 rows.
 Joint spherical(const std::string& name, int first, int second, const JointFrame& frame, double scale = 1);
+
+/// How a ball joint is turned: by two triads, and by angles about their axes.
+struct BallTurn {
+    TriadPair triads;
+    std::string angles = {};   ///< "xyz", "zyx" and the like: three different axes; empty: it has no angles
+};
+/// The same with readings: the rotation vector from the first triad to the second and its length, and with
+/// coordinates angle_1, angle_2, angle_3 if it has angles. Throws InputError `joint-angles`.
+Joint spherical(const std::string& name, int first, int second, const JointFrame& frame, const BallTurn& turn,
+                const Matrix34& X_first, const Matrix34& X_second, double scale = 1);
 /// A point of the second body on a line of the first, which the first's axis is. 2 rows. Coordinate:
 /// displacement.
 Joint point_on_line(const std::string& name, int first, int second, const JointFrame& frame,
@@ -107,6 +130,12 @@ Joint constant_angle(const std::string& name, int first, int second, const Joint
                      double scale = 1);
 /// A massless rod of the given length between the two points. 1 row. Throws InputError if length <= 0.
 Joint rod(const std::string& name, int first, int second, const JointFrame& frame, double length);
+/// A rope over two or more points, in this order, along which it runs freely: without mass and stretch, and
+/// always taut. The sum of its spans is `length`. 1 row; the reaction is that on the last of its bodies, at
+/// its last point there. X: of all bodies as they stand. Throws InputError `rod-length`, and what
+/// check_rope() throws.
+Joint rod(const std::string& name, const std::vector<BodyPoint>& over, double length,
+          const Configurations& X);
 
 /// A point of the second body slides along a curve in coordinates of the first. 2 rows. Throws InputError as
 /// curve_rows() does.
@@ -139,5 +168,11 @@ struct CoupledJoint {
 /// `coupling-terms` for less than two coordinates, one of them twice, and more than RowBodies::most bodies.
 Joint coupling(const std::string& name, const std::vector<CoupledJoint>& terms, const Configurations& X,
                double length = 1);
+/// sum_k factor_k coordinate_k = law(coordinate of `of`), whose factor does not count: cams, levers, what no
+/// sum says. One term is enough. Coordinates are what their joints call them, so that the start need not
+/// fulfil it. Also throws InputError `coupling-terms` for a coordinate on both sides, `coupling-law` for a
+/// law that positions do not tell, and `coupling-range` for a start outside of it.
+Joint coupling(const std::string& name, const std::vector<CoupledJoint>& terms, const CoupledJoint& of,
+               const CoordinateLaw& law, const Configurations& X, double length = 1);
 
 }   // namespace gnu::visibility("default")]]livens

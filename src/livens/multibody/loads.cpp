@@ -91,10 +91,10 @@ LoadArguments load_arguments(const Load& load, Instant at, std::span<const Matri
 
 double load_power(const Load& load, const LoadArguments& arguments)
 {
-    LoadForces F{};
+    LoadForces F(load.n_acted);
     load.forces(arguments, F);
     double power = 0;
-    for (int b = 0; b < 2; ++b)
+    for (std::size_t b = 0; b < load.n_acted; ++b)
         if (load.bodies[b] != world) power += dot(F[b], arguments.V[b]);
     return power;
 }

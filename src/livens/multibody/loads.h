@@ -16,6 +16,7 @@
 
 #include "livens/base/linear.h"
 #include "livens/multibody/joint_coordinates.h"
+#include "livens/multibody/rope.h"
 #include "livens/time/enclosure.h"
 #include "livens/time/guard.h"
 #include "livens/time/time_function.h"
@@ -31,7 +32,8 @@ struct TapeNumber;
 template <class T>
 class PerBody {
 public:
-    explicit PerBody(std::size_t n = 2, const T& value = {}) : n_(n)
+    PerBody() : PerBody(2) {}
+    explicit PerBody(std::size_t n, const T& value = {}) : n_(n)
     {
         if (n > 2)
             many_.assign(n, value);
@@ -45,6 +47,8 @@ public:
     const T* data() const { return n_ > 2 ? many_.data() : pair_.data(); }
     T* begin() { return n_ > 2 ? many_.data() : pair_.data(); }
     T* end() { return begin() + n_; }
+    const T* begin() const { return data(); }
+    const T* end() const { return data() + n_; }
 
 private:
     std::size_t n_;
@@ -63,21 +67,18 @@ struct LoadArguments {
     std::span<const double> angles{};
 };
 
-/// F_b for the one or two bodies that a load acts on, by virtual work tr(F_b^T dX_b); N in the first column,
-/// N m in the others.
-using LoadForces = std::array<Matrix34, 2>;
+/// F_b for the bodies that a load acts on, by virtual work tr(F_b^T dX_b); N in the first column, N m in the
+/// others.
+using LoadForces = PerBody<Matrix34>;
 
 /// Derivatives of the stacked columns of F_b by the stacked columns of X_c and of V_c: X[b][c] is 12 x 12,
-/// for the two b that it acts on and all c of Load::bodies.
+/// for the b that it acts on and all c of Load::bodies.
 struct LoadTangent {
-    explicit LoadTangent(std::size_t n_bodies = 2)
-    {
-        X.fill(PerBody<Matrix<12, 12>>(n_bodies));
-        V = X;
-    }
+    explicit LoadTangent(std::size_t n_bodies = 2, std::size_t n_acted = 2)
+        : X(n_acted, PerBody<Matrix<12, 12>>(n_bodies)), V(X)
+    {}
 
-    std::array<PerBody<Matrix<12, 12>>, 2> X;
-    std::array<PerBody<Matrix<12, 12>>, 2> V;
+    PerBody<PerBody<Matrix<12, 12>>> X, V;
 };
 
 /// A number that a load reports of itself.
@@ -157,16 +158,26 @@ struct ProductSlopes {
     PerBody<Matrix34> by_X, by_V;
 };
 
+/// Where a load acts along, for people.
+struct LoadLine {
+    /// Where it acts on its two bodies, in their coordinates; empty: not along a line.
+    std::vector<Vector3> points{};
+    /// Of a rope: the points that it runs over.
+    std::vector<BodyPoint> over{};
+};
+
 /// A load is data and functions; a new one is a new maker.
-struct Load : LoadSmoothness, LoadEnergy {
+struct Load : LoadSmoothness, LoadEnergy, LoadLine {
     std::string name;
     std::string type;
-    /// Two that it acts on, the second the world for a load on one body; then those that it only looks at.
+    /// Those that it acts on, two of them or more, the second the world for a load on one body; then those
+    /// that it only looks at.
     std::vector<int> bodies{world, world};
+    std::size_t n_acted = 2;     ///< that it acts on
     bool depends_on_X = false;   ///< dF/dX may differ from zero
     bool depends_on_V = false;   ///< dF/dV may differ from zero
-    std::array<bool, 2>
-        needs_directors{};   ///< F is not zero outside the first column: refused on a point mass
+    /// F is not zero outside the first column: refused on a point mass.
+    PerBody<char> needs_directors{};
     /// What it pulls towards tells the length of a model that has no other: the radius of an orbit.
     bool sets_length_scale = false;
     std::string domain;   ///< where F is a number, for the message if it is not; empty: everywhere
@@ -181,8 +192,6 @@ struct Load : LoadSmoothness, LoadEnergy {
     std::function<std::vector<ProductSlopes>(const LoadArguments&)> products = nullptr;
     /// For sensors and people.
     std::vector<LoadReading> readings;
-    /// For people: where it acts on its two bodies, in their coordinates; empty: not along a line.
-    std::vector<Vector3> points{};
 };
 
 enum class Frame { inertial, body_fixed };
@@ -238,6 +247,11 @@ struct SpringDamper {
 /// coincide: the force is zero for a linear spring of free_length 0 and along no direction (zero) otherwise.
 Load spring_damper(const std::string& name, int first, const Vector3& point_first, int second,
                    const Vector3& point_second, const SpringDamper& spring);
+/// The same along a rope over two or more points, in this order, along which it runs freely: one tension in
+/// all spans, by the sum of their lengths. X: of all bodies as they stand. Also throws what check_rope()
+/// does.
+Load rope_spring(const std::string& name, const std::vector<BodyPoint>& over, const SpringDamper& spring,
+                 const Configurations& X);
 
 struct JointSpring {
     double stiffness = 0;   ///< N/m or N m/rad

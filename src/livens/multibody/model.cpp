@@ -162,6 +162,19 @@ void check_drive(const Drive& drive, double scale, const std::string& path)
     }
 }
 
+void check_rotor(double inertia, bool has_events, const std::string& path)
+{
+    if (!(inertia >= 0) || !std::isfinite(inertia))
+        throw InputError({"rotor-inertia", path + ".rotor_inertia",
+                          "the inertia of a rotor must be finite and not negative", to_text(inertia), ">= 0",
+                          "", ""});
+    if (inertia > 0 && has_events)
+        refuse("rotor-inertia", path + ".rotor_inertia",
+               "a joint that acts for a part of the time has no rotor: nothing would turn it when the "
+               "joint has ended",
+               "leave out the times of the joint, or its 'rotor_inertia'");
+}
+
 /// Forms with bodies of their own, which need not be the joint's: gears turn about other joints.
 void check_coordinates(const ConstraintRow& row, const std::vector<Body>& bodies, const std::string& path)
 {
@@ -253,16 +266,20 @@ int Model::add_joint(Joint joint)
 
     const int index = static_cast<int>(joints_.size());
     const bool has_events = std::isfinite(joint.from) || std::isfinite(joint.until);
-    has_events_ = has_events_ || has_events;
+    has_.events = has_.events || has_events;
     // A joint that does not always act leaves its axes apart; then the angle is that of the turn between both
     // triads.
     for (NamedCoordinate& one : joint.coordinates)
         if (has_events && !one.apart.forms.empty()) one.coordinate = one.apart;
+    for (const NamedCoordinate& one : joint.coordinates) {
+        check_rotor(one.rotor_inertia, has_events, path);
+        has_.rotors = has_.rotors || one.rotor_inertia > 0;
+    }
     first_rows_.push_back(n_rows());
     for (int k = 0; k < static_cast<int>(joint.rows.size()); ++k) rows_.push_back({index, k});
     for (const ConstraintRow& row : joint.rows) {
-        has_drives_ = has_drives_ || !row.drives.empty();
-        has_pieces_ = has_pieces_ || row.guard;
+        has_.drives = has_.drives || !row.drives.empty();
+        has_.pieces = has_.pieces || row.guard;
     }
     joints_.push_back(std::move(joint));
     changed();
@@ -273,7 +290,8 @@ int Model::add_load(Load load)
 {
     check_name(loads_, load.name, "load");
     const std::string path = "load[" + load.name + "]";
-    if (load.bodies.size() < 2) refuse("load-empty", path, "a load acts on one body or between two");
+    if (load.n_acted < 2 || load.n_acted > load.bodies.size() || load.needs_directors.size() != load.n_acted)
+        refuse("load-empty", path, "a load acts on one body or between two");
     for (const int body : load.bodies) check_body_index(body, n_bodies(), path);
     if (load.bodies[0] == load.bodies[1])
         refuse("load-self", path,
@@ -284,12 +302,12 @@ int Model::add_load(Load load)
         refuse("load-without-tangent", path,
                "a load that depends on position or velocity needs its derivative");
     for (const double t : load.breaks) require_finite(Matrix<1, 1>{t}, path, "an instant");
-    for (int b = 0; b < 2; ++b)
+    for (std::size_t b = 0; b < load.n_acted; ++b)
         if (load.needs_directors[b] && load.bodies[b] != world && bodies_[load.bodies[b]].is_point)
             refuse("load-needs-directors", path,
                    "the load needs the orientation of '" + bodies_[load.bodies[b]].name + "', a point mass",
                    "a point mass takes forces in world axes at its own point");
-    has_pieces_ = has_pieces_ || !load.guards.empty() || load.bends_at_centre;
+    has_.pieces = has_.pieces || !load.guards.empty() || load.bends_at_centre;
     loads_.push_back(std::move(load));
     changed();
     return static_cast<int>(loads_.size()) - 1;
@@ -349,51 +367,9 @@ State Model::start() const
     return state;
 }
 
-namespace {
-
-std::vector<double> ascending(std::vector<double> all)
+Matrix34 weight(const Body& body, const Vector3& gravity)
 {
-    std::ranges::sort(all);
-    const auto repeated = std::unique(all.begin(), all.end());
-    all.erase(repeated, all.end());
-    return all;
+    return body.is_rotor ? Matrix34{} : outer(gravity, body.mass.column(0));
 }
-
-}   // namespace
-
-std::vector<double> Model::events() const
-{
-    std::vector<double> all;
-    for (const Joint& joint : joints_)
-        for (const double t : {joint.from, joint.until})
-            if (std::isfinite(t)) all.push_back(t);
-    return ascending(std::move(all));
-}
-
-std::vector<double> Model::load_breaks() const
-{
-    std::vector<double> all = events();
-    const auto add = [&all](const std::vector<double>& more) {
-        all.insert(all.end(), more.begin(), more.end());
-    };
-    for (const Load& load : loads_) add(load.breaks);
-    for (const Joint& joint : joints_)
-        for (const ConstraintRow& row : joint.rows)
-            for (const Drive& drive : row.drives) add(drive.factor.breaks());
-    return ascending(std::move(all));
-}
-
-Model frozen(const Model& model, Instant at)
-{
-    Model now = model;
-    now.has_drives_ = false;
-    for (Joint& joint : now.joints_)
-        for (auto* rows : {&joint.rows, &joint.branches})
-            for (ConstraintRow& row : *rows) row = frozen(row, at);
-    now.changed();
-    return now;
-}
-
-Matrix34 weight(const Body& body, const Vector3& gravity) { return outer(gravity, body.mass.column(0)); }
 
 }   // namespace livens

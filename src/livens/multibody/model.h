@@ -50,6 +50,11 @@ struct KnownLength {
     mutable std::atomic<double> value{0};
 };
 
+/// What a model has of things that not every engine takes.
+struct ModelParts {
+    bool drives = false, events = false, pieces = false, rotors = false;
+};
+
 /// A mechanism is built by the add_ functions and constant from then on; all others take it const. Functions
 /// in it (laws of loads, drives, rows) depend on their arguments alone: what was found with them is kept.
 class Model {
@@ -104,11 +109,13 @@ public:
     /// X and V of all bodies as they were given.
     State start() const;
     /// Whether rows depend on time.
-    bool has_drives() const { return has_drives_; }
+    bool has_drives() const { return has_.drives; }
     /// Whether the law of a load or row bends or jumps where the motion decides; see Load::guards.
-    bool has_pieces() const { return has_pieces_; }
+    bool has_pieces() const { return has_.pieces; }
     /// Whether joints act for a part of the time; these are what solve() divides it by, see acting_at().
-    bool has_events() const { return has_events_; }
+    bool has_events() const { return has_.events; }
+    /// Whether coordinates of joints have inertias, see rotors.h.
+    bool has_rotors() const { return has_.rotors; }
     /// When joints begin or end to act, ascending, without repetition.
     std::vector<double> events() const;
     /// All instants where a load jumps or bends, a drive bends, or a joint begins or ends to act, ascending,
@@ -137,8 +144,7 @@ private:
     std::vector<NamedPoint> points_;
     std::vector<RowPlace> rows_;
     std::vector<int> first_rows_;
-    bool has_drives_ = false;
-    bool has_events_ = false, has_pieces_ = false;
+    ModelParts has_;
     std::uint64_t version_ = 0;
     KnownLength length_;
 

@@ -24,7 +24,9 @@ double length_of(const Model& model)
     double length = 0, radius = 0;   // of gyration, the largest
     Vector3 middle{};
     const std::vector<Body>& bodies = model.bodies();
+    const auto n = std::ranges::count(bodies, false, &Body::is_rotor);
     for (const Body& body : bodies) {
+        if (body.is_rotor) continue;
         double square = 0;
         for (int i = 1; i < 4; ++i) {
             const double offset = body.mass(i, 0) / body.mass(0, 0);
@@ -33,12 +35,20 @@ double length_of(const Model& model)
             square += body.mass(i, i) / body.mass(0, 0) - offset * offset;
         }
         radius = std::max(radius, std::sqrt(std::max(square, 0.0)));
-        middle += (1.0 / model.n_bodies()) * center_of_mass(body);
+        middle += (1.0 / static_cast<double>(n)) * center_of_mass(body);
     }
     for (const Body& body : bodies)
-        length = std::max(length, 2 * told_distance(center_of_mass(body), middle));
+        if (!body.is_rotor) length = std::max(length, 2 * told_distance(center_of_mass(body), middle));
+    const auto of_rope = [&](const std::vector<BodyPoint>& over) {
+        const auto place = [&](const BodyPoint& at) {
+            return (at.body == world ? world_configuration : bodies[at.body].X) * point(at.point);
+        };
+        for (std::size_t k = 1; k < over.size(); ++k)
+            length = std::max(length, told_distance(place(over[k - 1]), place(over[k])));
+    };
     for (const Joint& joint : model.joints()) {
         const Body& second = bodies[joint.second];
+        if (second.is_rotor) continue;
         const Vector3 place = second.X * point(joint.point_second);
         const Matrix34& X_first = joint.first == world ? world_configuration : bodies[joint.first].X;
         const Vector3 other = X_first * point(joint.point_first);
@@ -46,7 +56,9 @@ double length_of(const Model& model)
             std::max({length, told_distance(place, center_of_mass(second)), told_distance(place, other)});
         if (joint.first != world)
             length = std::max(length, told_distance(other, center_of_mass(bodies[joint.first])));
+        of_rope(joint.over);
     }
+    for (const Load& load : model.loads()) of_rope(load.over);
     if (length > 0) return std::max(length, radius);
     for (const Load& load : model.loads()) {   // what attracts tells an orbit, but not a mechanism in one
         if (!load.sets_length_scale) continue;

@@ -45,6 +45,14 @@ void relocate(ConstraintRow& row, const Relocation& to)
     relocate(static_cast<PairForm&>(row), to);
 }
 
+void relocate(std::vector<BodyPoint>& over, const Relocation& to)
+{
+    for (BodyPoint& at : over) {
+        if (at.body == world) at.point = to.by.of_point(at.point);
+        at.body = to.body(at.body);
+    }
+}
+
 /// Of a load: what its functions see of bodies that were moved, and what becomes of what they say.
 class SeenFrom {
 public:
@@ -98,7 +106,7 @@ void look(std::function<Result(const LoadArguments&, More...)>& function, const 
 void look_and_turn_forces(Load& load, const SeenFrom& seen)
 {
     load.forces.evaluate = [forces = load.forces.evaluate, seen](const LoadArguments& at, LoadForces& F) {
-        LoadForces own{};
+        LoadForces own(F.size());
         forces(seen(at), own);
         for (std::size_t b = 0; b < F.size(); ++b) F[b] += seen.turned(own[b]);
     };
@@ -106,7 +114,7 @@ void look_and_turn_forces(Load& load, const SeenFrom& seen)
     look(load.inside->numbers, seen);
     load.inside->unit = [unit = load.inside->unit, seen](const LoadArguments& at, std::size_t k,
                                                          LoadForces& F) {
-        LoadForces own{};
+        LoadForces own(F.size());
         unit(seen(at), k, own);
         for (std::size_t b = 0; b < F.size(); ++b) F[b] += seen.turned(own[b]);
     };
@@ -116,7 +124,7 @@ void look_and_turn_tangent(Load& load, const SeenFrom& seen)
 {
     if (!load.tangent) return;
     load.tangent = [tangent = load.tangent, seen](const LoadArguments& at, LoadTangent& out) {
-        LoadTangent own(at.X.size());
+        LoadTangent own(at.X.size(), out.X.size());
         tangent(seen(at), own);
         for (std::size_t b = 0; b < out.X.size(); ++b)
             for (std::size_t c = 0; c < at.X.size(); ++c) {
@@ -192,14 +200,17 @@ Joint relocated(Joint joint, const Relocation& to)
     if (joint.first == world) {
         joint.point_first = to.by.of_point(joint.point_first);
         joint.axis_first = to.by.rotation * joint.axis_first;
+        joint.triads.first = to.by.rotation * joint.triads.first;
         for (Vector3& x : joint.path) x = to.by.of_point(x);
     }
+    relocate(joint.over, to);
     joint.first = to.body(joint.first);
     joint.second = to.body(joint.second);
     for (auto* rows : {&joint.rows, &joint.branches})
         for (ConstraintRow& row : *rows) relocate(row, to);
-    for (NamedCoordinate& one : joint.coordinates)
-        for (JointCoordinate* q : {&one.coordinate, &one.apart}) relocate(*q, to);
+    for (auto* all : {&joint.coordinates, &joint.readings})
+        for (NamedCoordinate& one : *all)
+            for (JointCoordinate* q : {&one.coordinate, &one.apart}) relocate(*q, to);
     return joint;
 }
 
@@ -208,6 +219,7 @@ Load relocated(Load load, const Relocation& to)
     load.name = to.name(load.name);
     if (!to.by.is_none()) displace(load, to.by);
     for (int& body : load.bodies) body = to.body(body);
+    relocate(load.over, to);
     for (JointCoordinate& angle : load.angles) relocate(angle, to);
     return load;
 }

@@ -55,12 +55,14 @@ Sensor relative_sensor(const std::string& name, int first, const Vector3& point_
 
 Sensor joint_sensor(const std::string& name, const Joint& joint)
 {
-    if (joint.coordinates.empty())
+    std::vector<NamedCoordinate> read = joint.coordinates;
+    read.insert(read.end(), joint.readings.begin(), joint.readings.end());
+    if (read.empty())
         throw InputError({"joint-coordinate", "sensor[" + name + "].joint",
                           "joint '" + joint.name + "' (" + joint.type + ") has no coordinate", "", "", "",
                           ""});
     Sensor sensor{name, "joint", {}};
-    for (const NamedCoordinate& q : joint.coordinates)
+    for (const NamedCoordinate& q : read)
         for (std::size_t k = 0; k < of_rates.size(); ++k) {
             const std::string unit = std::string(q.coordinate.is_angle() ? "rad" : "m") + per_second[k];
             sensor.components.push_back({q.name + of_rates[k], unit, q, static_cast<int>(k)});

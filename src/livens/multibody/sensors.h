@@ -41,8 +41,8 @@ Sensor point_sensor(const std::string& name, int body, const Vector3& point, con
 /// and the rates of these, ax, ay, az. Either may be the world.
 Sensor relative_sensor(const std::string& name, int first, const Vector3& point_first, int second,
                        const Vector3& point_second, const Configurations& X);
-/// All coordinates of a joint, their rates and accelerations. Throws InputError (`joint-coordinate`) if it
-/// has none.
+/// All coordinates and readings of a joint, their rates and accelerations. Throws InputError
+/// (`joint-coordinate`) if it has none.
 Sensor joint_sensor(const std::string& name, const Joint& joint);
 /// What a load reports, and its power on the bodies.
 Sensor load_sensor(const std::string& name, int index, const Load& load);

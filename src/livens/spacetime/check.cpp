@@ -11,6 +11,7 @@
 #include "livens/spacetime/mixed/bases.h"
 #include "livens/spacetime/mixed/window.h"
 #include "livens/spacetime/phases.h"
+#include "livens/spacetime/rotating.h"
 #include "livens/spacetime/solve.h"
 #include "livens/stepping/stepping.h"
 
@@ -51,7 +52,8 @@ void refuse_free_bodies(const Model& model)
     }
     for (const Load& load : model.loads())
         // A spring holds a body like a joint; a force without a potential may follow it anywhere.
-        if (load.depends_on_X && load.potential) tie(load.bodies[0], load.bodies[1]);
+        for (std::size_t b = 1; load.depends_on_X && load.potential && b < load.n_acted; ++b)
+            tie(load.bodies[0], load.bodies[b]);
     for (int b = 0; b < model.n_bodies(); ++b)
         if (!is_held[group[b]])
             throw InputError(
@@ -62,7 +64,8 @@ void refuse_free_bodies(const Model& model)
                  "give positions at the start or at the end"});
 }
 
-/// The other families take quadratic forms alone.
+/// The other families follow no drives, and elements of the paper no turns, which are counted from node to
+/// node.
 void refuse_special_rows(const Model& model, const Method& method)
 {
     if (is_nodal(method)) return;
@@ -70,13 +73,13 @@ void refuse_special_rows(const Model& model, const Method& method)
     if (model.has_drives())
         throw InputError({"drives-method", "method.family", "the method " + name + " cannot follow drives",
                           name, "lobatto or radau", "", "use lobatto for joints that depend on time"});
-    for (int r = 0; r < model.n_rows(); ++r)
-        if (!model.row(r).functions.empty())
+    for (int r = 0; r < model.n_rows() && std::holds_alternative<Mixed>(method); ++r)
+        if (model.row(r).period > 0)
             throw InputError({"joint-method", "method.family",
                               "the method " + name + " cannot hold " + model.row_name(r), name,
-                              "lobatto or radau",
-                              "its rows must be quadratic forms of the bodies' positions and directors",
-                              "use lobatto for screws, couplings, gears and slots"});
+                              "lobatto, radau, midpoint or endpoint",
+                              "its row counts turns of angles, from node to node",
+                              "use lobatto for screws, gears and couplings of angles"});
 }
 
 /// Where forces follow the motion, vibrations and laws that bend make errors that add up from element to
@@ -169,6 +172,7 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
 {
     if (model.n_bodies() == 0)
         throw InputError({"no-bodies", "body", "a model needs at least one body", "", "", "", "add a body"});
+    refuse_rotors(model, problem.conditions, method);
     refuse_special_rows(model, method);
     check_conditions(model, problem.conditions, method);
     check_events(model, problem, time, method);

@@ -20,6 +20,7 @@
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/accuracy/accuracy.h"
 #include "livens/spacetime/phases.h"
+#include "livens/spacetime/rotating.h"
 #include "livens/spacetime/solve_mesh.h"
 
 namespace livens {
@@ -128,7 +129,15 @@ Solution solve(const Model& model, const Problem& stated, const Time& time, cons
     // A method that cannot take the conditions or the drives is refused before any work.
     check_method(model, stated, time, method, options);
     const Problem problem = with_prepared(stated);
-    Solution solution = solve_unjudged(model, problem, time, method, options);
+    Solution solution;
+    if (model.has_rotors()) {
+        const WithRotors rotors(model);
+        solution =
+            without_rotors(rotors, std::make_shared<Solution>(solve_unjudged(
+                                       rotors.model(), with_rotors(rotors, problem), time, method, options)));
+    } else {
+        solution = solve_unjudged(model, problem, time, method, options);
+    }
     // A start that does not close is an error of the input; inside of searches it is a result among others.
     if (solution.cannot_begin) throw InputError(std::move(*solution.cannot_begin));
     if (!options.judge || solution.motion.mesh.ends.empty()) return solution;
@@ -148,7 +157,8 @@ Solution solve(const Model& model, const Problem& stated, const Time& time, cons
 ExactSampler::ExactSampler(const Model& model, const Motion& motion, const Method& method,
                            const SolveOptions& options)
     : model_(model), motion_(motion), method_(method), options_(options), turns_(model, motion),
-      joints_(model, motion), prepared_(std::make_shared<Prepared>())
+      joints_(model, motion), prepared_(std::make_shared<Prepared>()),
+      rotors_(model.has_rotors() ? std::make_shared<const WithRotors>(model) : nullptr)
 {
     // The motion knows what was taken of what was left open.
     if (is_nodal(method) && motion.X.points == Points::radau)
@@ -187,7 +197,10 @@ ExactSample ExactSampler::at(double t) const
     problem.conditions.start.angles = turns_.at_end(element);   // files do not hold them
     // One shortened element from the state before it: its end has the order 2p that the polynomial lacks.
     const TimeMesh one{{motion_.mesh.ends[element], t}};
-    Solution s = solve_all_time(model_, problem, one, method_, options_);
+    if (rotors_ != nullptr) problem.conditions.start = rotors_->with(problem.conditions.start);
+    const Model& whole = rotors_ != nullptr ? rotors_->model() : model_;
+    Solution s = solve_all_time(whole, problem, one, method_, options_);
+    if (rotors_ != nullptr) rotors_->take_off(s.motion);
     if (s.cannot_begin) throw InputError(std::move(*s.cannot_begin));
     const double there = s.motion.end();   // t, if it converged
     return {sample_state(s.motion, there), sample_joints(model_, s.motion, there), std::move(s.report)};

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,10 @@
 #include "livens/spacetime/problem.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+inline namespace multibody_internal {
+class WithRotors;
+}   // namespace multibody_internal
 
 struct Solution {
     Motion motion;        ///< up to the last good element end
@@ -34,6 +39,9 @@ struct Solution {
     double estimate_seconds = 0;    ///< that the second solution and the neighbouring motion took
     /// Why the motion has no beginning, where that is a matter of the motion before it; solve() throws it.
     std::optional<Complaint> cannot_begin{};
+    /// Of a model with inertias along coordinates the same with their points, see WithRotors: what estimate()
+    /// goes on from. Null: it has none.
+    std::shared_ptr<Solution> with_rotors{};
 };
 
 /// Throws InputError for wrong input (degree out of range, a start that does not fit, see consistent_start(),
@@ -104,6 +112,7 @@ private:
     LoadTurns turns_;
     JointSampler joints_;
     std::shared_ptr<Prepared> prepared_;
+    std::shared_ptr<const WithRotors> rotors_;   // null: there are none
 };
 
 }   // namespace gnu::visibility("default")]]livens

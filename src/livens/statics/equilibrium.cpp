@@ -178,7 +178,7 @@ private:
     {
         for (Counted& one : counted_) {
             const double x = coordinate_value(one.q->coordinate, X);
-            one.value = one.q->coordinate.is_angle() ? turned_to(x, one.value) : x;
+            one.value = one.q->coordinate.counts_turns() ? turned_to(x, one.value) : x;
         }
     }
 

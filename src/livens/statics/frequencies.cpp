@@ -11,6 +11,7 @@
 #include <random>
 #include <vector>
 
+#include "livens/multibody/rotors.h"
 #include "livens/solvers/spectral.h"
 #include "livens/statics/small_motions.h"
 
@@ -54,6 +55,7 @@ public:
             // radau takes").
             one.decay = dot(y, times(dampers, y));
             for (int b = 0; b < tables_.n_bodies(); ++b) {
+                if (tables_.model->bodies()[static_cast<std::size_t>(b)].is_rotor) continue;
                 const auto twist = part(y, b);
                 Matrix34 moved{};
                 for (int k = 0; k < tables_.bodies[b].dofs; ++k)
@@ -219,6 +221,13 @@ std::string Frequency::where(const Model& model) const
 
 HighestFrequencies highest_frequencies(const Model& model, const State& state, Side side)
 {
+    if (model.has_rotors()) {
+        const WithRotors rotors(model);
+        HighestFrequencies found = highest_frequencies(rotors.model(), rotors.with(state), side);
+        for (Frequency* one : {&found.springs, &found.dampers, &found.constraints})
+            one->body = rotors.told_body(one->body);
+        return found;
+    }
     const PreparedState at(model, state, side, false);
     if (!at.is_fit) return {};
     const SmallMotions forms(at.tables, at.state, side);
@@ -243,6 +252,10 @@ HighestFrequencies highest_frequencies(const Model& model, const State& state, S
 
 std::vector<Vibration> vibrations(const Model& model, const State& state, Side side)
 {
+    if (model.has_rotors()) {
+        const WithRotors rotors(model);
+        return vibrations(rotors.model(), rotors.with(state), side);
+    }
     const PreparedState at(model, state, side, true);
     if (!at.is_fit) return {};
     const SmallMotions forms(at.tables, at.state, side);

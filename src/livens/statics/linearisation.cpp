@@ -10,6 +10,7 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/rotors.h"
 #include "livens/solvers/factors.h"
 #include "livens/solvers/spectral.h"
 #include "livens/statics/statics.h"
@@ -67,6 +68,24 @@ bool is_symmetric(const DenseMatrix& A, double rounding)
     return 2 * largest_size(skew_part(A).a) <= rounding;
 }
 
+/// a g g^T of each rotor, g being how its coordinate goes with those of the basis.
+void add_rotors(const Model& model, std::span<const Matrix34> X, const DenseMatrix& twists, DenseMatrix& M)
+{
+    for (const Rotor& rotor : rotors_of(model)) {
+        std::vector<double> slope;
+        for (int k = 0; k < M.cols; ++k) {
+            std::vector<Matrix34> V;
+            for (std::size_t b = 0; b < X.size(); ++b) {
+                const auto t = twists.column(k).subspan(6 * b, 6);
+                V.push_back(rate(X[b], {t[0], t[1], t[2]}, {t[3], t[4], t[5]}));
+            }
+            slope.push_back(coordinate_rate(rotor.coordinate, X, V));
+        }
+        for (int k = 0; k < M.cols; ++k)
+            for (int i = 0; i < M.rows; ++i) M(i, k) += rotor.inertia * slope[i] * slope[k];
+    }
+}
+
 }   // namespace
 
 Linearisation linearise(const Model& the_model, const State& state, Side side)
@@ -92,7 +111,9 @@ Linearisation linearise(const Model& the_model, const State& state, Side side)
     linear.n = free.n;
     const DenseMatrix C = free.reduced(at.tables, statics.damping),
                       K = free.reduced(at.tables, statics.stiffness);
-    linear.M = by_rows(symmetric_part(free.reduced(at.tables, mass)));
+    DenseMatrix M = free.reduced(at.tables, mass);
+    add_rotors(model, linear.state.X, twists_of(at.tables, at.state, free), M);
+    linear.M = by_rows(symmetric_part(M));
     linear.C = by_rows(C);
     linear.K = by_rows(K);
     linear.twists = by_rows(twists_of(at.tables, at.state, free));
@@ -152,7 +173,8 @@ Values row_of(const Model& model, const Linearisation& linear, const std::string
         const auto row = linear.twists.begin() + linear.n * (6 * body + static_cast<int>(axes.find(what)));
         return {row, row + linear.n};
     }
-    if (what != "angle" && what != "displacement") refuse_port(name, "is no quantity of a joint or a body");
+    if (!what.starts_with("angle") && what != "displacement")
+        refuse_port(name, "is no quantity of a joint or a body");
     const int joint = model.find_joint(whose);
     if (joint < 0) refuse_port(name, "names no joint");
     const NamedCoordinate* coordinate = find_coordinate(model.joints()[joint], what);

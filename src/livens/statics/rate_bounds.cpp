@@ -42,9 +42,9 @@ void RateBounds::add(int l, const State& state, Slopes slopes)
         for (const ProductSlopes& one : load.products(arguments)) add_damper(load, one, X);
         return;
     }
-    LoadTangent tangent(load.bodies.size());
+    LoadTangent tangent(load.bodies.size(), load.n_acted);
     load.tangent(arguments, tangent);
-    for (std::size_t r = 0; r < 2; ++r)
+    for (std::size_t r = 0; r < load.n_acted; ++r)
         for (std::size_t s = 0; s < load.bodies.size(); ++s) {
             const int i = load.bodies[r], j = load.bodies[s];
             if (i == world || j == world) continue;
@@ -64,7 +64,7 @@ void RateBounds::add_damper(const Load& load, const ProductSlopes& slopes, const
         tables_.bodies.scaled_row(b, X + 12 * b, maps_.data() + 12 * b, g.a, y);
         return std::sqrt(squared_norm(std::span(y)));
     };
-    for (std::size_t r = 0; r < 2; ++r)
+    for (std::size_t r = 0; r < load.n_acted; ++r)
         for (std::size_t s = 0; s < load.bodies.size(); ++s) {
             const int i = load.bodies[r], j = load.bodies[s];
             if (i != world && j != world)

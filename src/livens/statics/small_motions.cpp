@@ -59,9 +59,9 @@ void SmallMotions::add_loads(TwistTerms& springs, TwistTerms& dampers) const
     tables_.bodies.rates_of(state_.X.data(), state_.velocity.data(), V.data());
     for (const int l : tables_.loads.with_tangent) {
         const Load& load = tables_.model->loads()[l];
-        LoadTangent tangent(load.bodies.size());
+        LoadTangent tangent(load.bodies.size(), load.n_acted);
         load.tangent(tables_.loads.arguments(l, at_, state_.X.data(), V.data(), state_.angles), tangent);
-        for (std::size_t r = 0; r < 2; ++r)
+        for (std::size_t r = 0; r < load.n_acted; ++r)
             for (std::size_t s = 0; s < load.bodies.size(); ++s) {
                 const int i = load.bodies[r], j = load.bodies[s];
                 // The world does not move: its columns multiply zero.

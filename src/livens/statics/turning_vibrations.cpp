@@ -151,6 +151,7 @@ int n_below(const Values& ascending, double bound)
 
 std::vector<TurningVibration> turning_vibrations(const Model& model, const State& state, double slowest)
 {
+    if (model.has_rotors()) return {};   // what they add to inertia is not seen here
     if (6 * model.n_bodies() - model.n_rows() > most_freedoms) return {};
     const PreparedState now(model, state, Side::right, true);
     if (!now.is_fit) return {};

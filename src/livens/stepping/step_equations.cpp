@@ -51,7 +51,7 @@ StepEquations::System StepEquations::evaluate(const StepStart& start,
         add_force(b, -start.h, start.P[b], system);
     }
     add_mass(system);
-    add_constraints(X_a, X_1, unknowns, system);
+    add_constraints(start.X, X_a, X_1, unknowns, system);
     add_loads(start, X_a, V_a, system);
     return system;
 }
@@ -63,7 +63,7 @@ StepEquations::System StepEquations::projection(const std::vector<Matrix34>& X,
     system.residual.assign(size(), 0.0);
     add_mass(system);
     // Lambda = 0: what remains are the columns G^T and the rows G.
-    add_constraints(X, X, std::vector<double>(size(), 0.0), system);
+    add_constraints(X, X, X, std::vector<double>(size(), 0.0), system);
     std::fill(system.residual.begin(), system.residual.end(), 0.0);
     for (int b = 0; b < model_.n_bodies(); ++b) add_force(b, 1, P[b], system);
     return system;
@@ -75,14 +75,19 @@ void StepEquations::add_mass(System& system) const
 }
 
 /// G(q_a)^T Lambda and Phi(q1), and their tangents: a K Lambda, G(q_a)^T, G(q1).
-void StepEquations::add_constraints(const std::vector<Matrix34>& X_a, const std::vector<Matrix34>& X_1,
-                                    const std::vector<double>& unknowns, System& system) const
+void StepEquations::add_constraints(const std::vector<Matrix34>& X_0, const std::vector<Matrix34>& X_a,
+                                    const std::vector<Matrix34>& X_1, const std::vector<double>& unknowns,
+                                    System& system) const
 {
+    const std::vector<Matrix34> u = displacements(unknowns);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
         const ConstraintRow& row = rows_[k].form;
         const int at = n_displacements_ + static_cast<int>(k), i = row.body_i, j = row.body_j;
         const double multiplier = unknowns[at];
-        system.residual[at] = constraint_value(row, X_1);
+        // what positions tell up to turns, or up to a sign, is followed from the start of the step
+        system.residual[at] = row.functions.empty()
+                                  ? constraint_value(row, X_1)
+                                  : constraint_value(row, X_0) + constraint_change(row, {}, X_0, {}, X_1, u);
         // Forces act at X_a, constraints hold at X_1. At the midpoint G(X_a) u = Phi(X_1) - Phi(X_0) for
         // quadratic rows, hence the rule keeps energy.
         const RowGradient all_a = constraint_gradient(row, X_a), all_1 = constraint_gradient(row, X_1);
@@ -95,11 +100,30 @@ void StepEquations::add_constraints(const std::vector<Matrix34>& X_a, const std:
             }
         }
         if (multiplier == 0) continue;
+        if (!row.functions.empty()) {
+            add_hessian(row, X_a, a_ * multiplier, system);
+            continue;
+        }
         add_columns(i, i, a_ * multiplier, row.c_ii, system);
         add_columns(j, j, a_ * multiplier, row.c_jj, system);
         add_columns(i, j, a_ * multiplier, transpose(row.c_ij), system);
         add_columns(j, i, a_ * multiplier, row.c_ij, system);
     }
+}
+
+/// Of a row that is no quadratic form: factor times its second derivatives.
+void StepEquations::add_hessian(const ConstraintRow& row, const std::vector<Matrix34>& X, double factor,
+                                System& system) const
+{
+    const RowBodies bodies = row_bodies(row);
+    for (const int body : bodies)
+        for (const int by : bodies) {
+            const Matrix<12, 12> H = constraint_hessian(row, {}, X, body, by);
+            for (int r = 0; r < n_numbers(body); ++r)
+                for (int c = 0; c < n_numbers(by); ++c)
+                    if (H(r, c) != 0)
+                        system.tangent.push_back({first_[body] + r, first_[by] + c, factor * H(r, c)});
+        }
 }
 
 /// -a h^2 F(t_a, q_a, V_a) and its tangent -a h^2 (a dF/dX + dF/dV / h).
@@ -114,11 +138,11 @@ void StepEquations::add_loads(const StepStart& start, const std::vector<Matrix34
     const Instant at{start.t + a_ * start.h, a_ == 1 ? Side::left : Side::middle};
     for (const Load& load : model_.loads()) {
         const LoadArguments arguments = load_arguments(load, at, X_a, V_a);
-        LoadForces F{};
-        LoadTangent T(load.bodies.size());
+        LoadForces F(load.n_acted);
+        LoadTangent T(load.bodies.size(), load.n_acted);
         load.forces(arguments, F);
         if (load.depends_on_X || load.depends_on_V) load.tangent(arguments, T);
-        for (int s = 0; s < 2; ++s) {
+        for (std::size_t s = 0; s < load.n_acted; ++s) {
             const int body = load.bodies[s];
             if (body == world) continue;
             if (!finite(F[s])) system.not_finite = not_finite(load);

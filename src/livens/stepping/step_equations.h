@@ -77,8 +77,11 @@ private:
     int n_numbers(int body) const { return model_.bodies()[body].is_point ? 3 : 12; }
     std::string row_name(const Row& row) const;
     void add_mass(System& system) const;
-    void add_constraints(const std::vector<Matrix34>& X_a, const std::vector<Matrix34>& X_1,
-                         const std::vector<double>& unknowns, System& system) const;
+    void add_constraints(const std::vector<Matrix34>& X_0, const std::vector<Matrix34>& X_a,
+                         const std::vector<Matrix34>& X_1, const std::vector<double>& unknowns,
+                         System& system) const;
+    void add_hessian(const ConstraintRow& row, const std::vector<Matrix34>& X, double factor,
+                     System& system) const;
     void add_loads(const StepStart& start, const std::vector<Matrix34>& X_a, const std::vector<Matrix34>& V_a,
                    System& system) const;
     void add_force(int body, double factor, const Matrix34& F, System& system) const;

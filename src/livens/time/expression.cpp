@@ -234,6 +234,8 @@ std::vector<double> Expression::values(double t, std::span<const double> symbols
     return all;
 }
 
+TimeValue Expression::by_symbol(double symbol) const { return evaluate(0, {&symbol, 1}, 0).back(); }
+
 TimeValue Expression::by_time(double t, std::span<const double> symbols) const
 {
     return evaluate(t, symbols, -1).back();

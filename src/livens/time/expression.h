@@ -90,6 +90,8 @@ public:
     std::vector<double> values(double t, std::span<const double> symbols) const;
     /// Value and two derivatives by time, where symbols do not change.
     TimeValue by_time(double t, std::span<const double> symbols = {}) const;
+    /// Value and two derivatives by the only symbol, at t = 0.
+    TimeValue by_symbol(double symbol) const;
     /// "division by 0 at column 5": the first operation that has no value there; empty if all have.
     std::string without_value(double t, std::span<const double> symbols) const;
 

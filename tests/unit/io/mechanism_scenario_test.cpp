@@ -169,6 +169,14 @@ std::vector<test::Case> cases_of_joints()
     return {
         {"joint-angle", joined("type = \"constant_angle\"\naxes = [[1, 0, 0], [1, 0, 0]]\nangle = 0"),
          "0\n[time]"},
+        {"joint-angles",
+         other("type = \"spherical\"\nbetween = [\"world\", \"c\"]\nat = [0, 0, 0]\nangles = \"xyz\"\n"
+               "[[body]]\nname = \"c\"\nmass = 1\nshape = { point = true }"),
+         "\"xyz\""},
+        {"drive-angle",
+         joined("type = \"spherical\"\nat = [0, 0, 0]\nangles = \"xyz\"\n[[drive]]\nname = \"d\"\n" +
+                on_joint + "coordinate = \"angle_2\"\nvalue = 2"),
+         "\"d\""},
         {"joint-bend", joined("type = \"constant_velocity\"\nat = [0, 0, 0]\naxes = [[1, 0, 0], [-1, 0, 0]]"),
          "[[1, 0, 0], [-1"},
         {"joint-coordinate", driven(on_joint + "coordinate = \"displacement\"\nvalue = 0"), "\"j\"\ncoord"},
@@ -200,18 +208,26 @@ std::string coupled(const std::string& terms)
 
 std::vector<test::Case> cases_of_couplings()
 {
-    return {{"coupling-terms", coupled("{}"), "{}"},
-            {"coupling-terms", coupled("{ \"j.angle\" = 1 }"), "{ \"j"},
-            {"joint-factor", coupled("{ \"j.angle\" = 1, \"l.angle\" = 0 }"), "{ \"j"},
-            {"joint-coordinate", coupled("{ \"j.angle\" = 1, \"l.displacement\" = 1 }"), "{ \"j"},
-            {"joint-coordinate", coupled("{ \"j.angle\" = 1, l = 1 }"), "l = 1"},
-            {"joint-unknown", coupled("{ \"j.angle\" = 1, \"jj.angle\" = 1 }"), "\"jj"},
-            {"joint-unknown", coupled("{ \"j.angle\" = 1, \"k.angle\" = 1 }"), "\"k.a"},
-            {"gear-ratio", coupled("{ \"j.angle\" = 1, \"l.angle\" = 3.14159265358979 }"), "\"k\""},
-            {"unit", coupled("{ \"j.angle\" = \"5 cm\", \"l.angle\" = \"2 s\" }"), "\"2 s\""},
-            {"not-finite", coupled("{ \"j.angle\" = inf, \"l.angle\" = 1 }"), "inf"},
-            {"wrong-type", coupled("{ \"j.angle\" = true, \"l.angle\" = 1 }"), "true"},
-            {"missing-key", other("type = \"coupling\""), "[[joint]]\nname = \"k\""}};
+    return {
+        {"coupling-terms", coupled("{}"), "{}"},
+        {"coupling-terms", coupled("{ \"j.angle\" = 1 }"), "{ \"j"},
+        {"joint-factor", coupled("{ \"j.angle\" = 1, \"l.angle\" = 0 }"), "{ \"j"},
+        {"joint-coordinate", coupled("{ \"j.angle\" = 1, \"l.displacement\" = 1 }"), "{ \"j"},
+        {"joint-coordinate", coupled("{ \"j.angle\" = 1, l = 1 }"), "l = 1"},
+        {"joint-unknown", coupled("{ \"j.angle\" = 1, \"jj.angle\" = 1 }"), "\"jj"},
+        {"joint-unknown", coupled("{ \"j.angle\" = 1, \"k.angle\" = 1 }"), "\"k.a"},
+        {"gear-ratio", coupled("{ \"j.angle\" = 1, \"l.angle\" = 3.14159265358979 }"), "\"k\""},
+        {"unit", coupled("{ \"j.angle\" = \"5 cm\", \"l.angle\" = \"2 s\" }"), "\"2 s\""},
+        {"not-finite", coupled("{ \"j.angle\" = inf, \"l.angle\" = 1 }"), "inf"},
+        {"wrong-type", coupled("{ \"j.angle\" = true, \"l.angle\" = 1 }"), "true"},
+        {"missing-key", other("type = \"coupling\""), "[[joint]]\nname = \"k\""},
+        {"coupling-law",
+         coupled("{ \"l.angle\" = 1 }\nlaw = { of = \"j.angle\", expression = \"abs(angle)\" }"), "{ of"},
+        {"coupling-range",
+         coupled("{ \"l.angle\" = 1 }\nlaw = { of = \"j.angle\", coordinates = [1, 2], values = [0, 1] }"),
+         "{ of"},
+        {"rope-points", other("type = \"rod\"\nover = [{ body = \"b\" }]"), "[{ body"},
+        {"rope-span", other("type = \"rod\"\nover = [{ body = \"world\" }, { body = \"b\" }]"), "[{ body"}};
 }
 
 TEST(MechanismScenario, CouplingsTellWhatWasMeant)

@@ -106,7 +106,7 @@ TEST(Mistakes, OfKeysAreAnsweredWithTheKeyOrTheTable)
     for (const char* key : {"d", "viscous_damping"})
         expect_answer({axis, axis + "\n" + key + " = 1", "livens calls it 'damping'"});
     expect_answer({axis, axis + "\nk = 1", "livens calls it 'stiffness'"});
-    expect_answer({axis, axis + "\narmature = 1", "\"rack_and_pinion\" of radius 1"});
+    expect_answer({axis, axis + "\narmature = 1", "livens calls it 'rotor_inertia'"});
     for (const char* key : {"damping", "stiffness", "viscous_damping"})
         expect_answer({"type = \"revolute\"", "type = \"cylindrical\"\n" + std::string(key) + " = 1",
                        "angle = { damping = 0.1 }"});

@@ -84,8 +84,11 @@ const Table& table_of(const std::string& header, const std::string& type)
     if (header == "[load.table]") heading = (type == "actuator" ? "table of an " : "table of a ") + type;
     if (header.starts_with("[drive.")) heading = header.substr(7, header.size() - 8) + " of a drive";
     if (header == "[joint.curve]") heading = "curve of a slot";
+    if (header == "[joint.law]") heading = "law of a coupling";
+    if (header == "[[joint.over]]") heading = "point of a rope";
     if (header == "[joint.angle]" || header == "[joint.displacement]")
         heading = header.substr(7, header.size() - 8) + " of a joint";
+    if (header.starts_with("[joint.angle_")) heading = "angle of a joint";
     if (header == "[[joint.frames]]") heading = "frame of a joint";
     if (header == "[[load.frames]]") heading = "frame of a bushing";
     if (header == "[body.shape]") heading = "shape of [[body]]";

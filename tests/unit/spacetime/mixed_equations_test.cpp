@@ -16,9 +16,9 @@
 namespace livens {
 namespace {
 
-using mixed::Given;
 using mixed::Equations;
 using mixed::Fields;
+using mixed::Given;
 using mixed::Numbering;
 
 struct Case {
@@ -208,7 +208,7 @@ TEST(MixedEquationsPattern, GrowsWhenALoadBeginsToAct)
     late.name = "late";
     late.bodies = {body, world};
     late.depends_on_X = true;
-    late.needs_directors = {true, false};
+    late.needs_directors[0] = true;
     late.forces = [](const LoadArguments& a, LoadForces& F) { F[0](0, 1) = a.X[0](1, 1) * a.X[0](1, 1); };
     late.tangent = [](const LoadArguments& a, LoadTangent& T) { T.X[0][0](3, 4) = 2 * a.X[0](1, 1); };
     model.add_load(late);

@@ -37,7 +37,7 @@ bool has_own_integrals(const Model& model, const Motion& motion)
 {
     const bool is_exact = motion.gauss_points >= motion.X.degree ||
                           (takes_loads_at_nodes(motion) && motion.X.points == Points::lobatto);
-    return is_exact && motion.P.empty() && motion.X.denominators.empty() &&
+    return is_exact && !model.has_rotors() && motion.P.empty() && motion.X.denominators.empty() &&
            std::ranges::none_of(model.loads(), [](const Load& load) { return bool(load.potential); });
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/diagnostics/detail/sparse_form.h"
 
+#include <algorithm>
+
 #include "livens/base/elementary.h"
 
 namespace livens::inline diagnostics_internal {
@@ -61,6 +63,7 @@ double SparseForm::acceleration(const double* X, const double* V, const double* 
 }
 
 SparseCoordinate::SparseCoordinate(const JointCoordinate& coordinate, const double* stated)
+    : kind_(coordinate.kind)
 {
     for (const PairForm& form : coordinate.forms) {
         forms_.emplace_back(form);
@@ -68,28 +71,47 @@ SparseCoordinate::SparseCoordinate(const JointCoordinate& coordinate, const doub
     }
 }
 
+SmoothFunction::Point SparseCoordinate::forms_at(const double* X) const
+{
+    SmoothFunction::Point q{};
+    for (std::size_t k = 0; k < forms_.size(); ++k) q[k] = forms_[k].value(X);
+    return q;
+}
+
 double SparseCoordinate::change(const double* X) const
 {
-    if (!is_angle()) return forms_[0].value(X) - stated_[0];
-    const double c0 = stated_[0], s0 = stated_[1], c = forms_[0].value(X), s = forms_[1].value(X);
-    return arc_tangent(c0 * s - s0 * c, c0 * c + s0 * s);
+    const SmoothFunction::Point q = forms_at(X);
+    if (counts_turns())
+        return arc_tangent(stated_[0] * q[1] - stated_[1] * q[0], stated_[0] * q[0] + stated_[1] * q[1]);
+    SmoothFunction::Point stated{};
+    std::ranges::copy(stated_, stated.begin());
+    return coordinate_at(kind_, q).value - coordinate_at(kind_, stated).value;
 }
 
 double SparseCoordinate::rate(const double* X, const double* V) const
 {
-    if (!is_angle()) return forms_[0].rate(X, V);
-    const double c = forms_[0].value(X), s = forms_[1].value(X);
-    return (c * forms_[1].rate(X, V) - s * forms_[0].rate(X, V)) / (c * c + s * s);
+    if (kind_ == CoordinateKind::displacement) return forms_[0].rate(X, V);
+    const SmoothFunction::Value at = coordinate_at(kind_, forms_at(X));
+    double rate = 0;
+    for (std::size_t k = 0; k < forms_.size(); ++k) rate += at.gradient[k] * forms_[k].rate(X, V);
+    return rate;
 }
 
-/// theta' = (c s' - s c') / r, r = c^2 + s^2: the slope of that.
+/// Of q(f): the sum of dq/df f'' and f'^T d2q/df2 f'.
 double SparseCoordinate::acceleration(const double* X, const double* V, const double* A) const
 {
-    if (!is_angle()) return forms_[0].acceleration(X, V, A);
-    const double c = forms_[0].value(X), s = forms_[1].value(X), dc = forms_[0].rate(X, V),
-                 ds = forms_[1].rate(X, V), r = c * c + s * s;
-    const double turned = c * forms_[1].acceleration(X, V, A) - s * forms_[0].acceleration(X, V, A);
-    return (turned - 2 * (c * dc + s * ds) * (c * ds - s * dc) / r) / r;
+    if (kind_ == CoordinateKind::displacement) return forms_[0].acceleration(X, V, A);
+    const SmoothFunction::Value at = coordinate_at(kind_, forms_at(X));
+    SmoothFunction::Point rates{};
+    double acceleration = 0;
+    for (std::size_t k = 0; k < forms_.size(); ++k) {
+        rates[k] = forms_[k].rate(X, V);
+        acceleration += at.gradient[k] * forms_[k].acceleration(X, V, A);
+    }
+    for (std::size_t k = 0; k < forms_.size(); ++k)
+        for (std::size_t l = 0; l < forms_.size(); ++l)
+            acceleration += at.hessian[k][l] * rates[k] * rates[l];
+    return acceleration;
 }
 
 }   // namespace livens::inline diagnostics_internal

@@ -41,15 +41,23 @@ class SparseCoordinate {
 public:
     SparseCoordinate(const JointCoordinate& coordinate, const double* stated);
 
-    bool is_angle() const { return forms_.size() == 2; }
+    bool counts_turns() const
+    {
+        return kind_ == CoordinateKind::angle || kind_ == CoordinateKind::outer_angle;
+    }
+    /// See is_known().
+    bool is_known(const double* X) const { return livens::is_known(kind_, forms_at(X)); }
     /// See coordinate_change(), from the stated bodies; and coordinate_rate().
     double change(const double* X) const;
     double rate(const double* X, const double* V) const;
     double acceleration(const double* X, const double* V, const double* A) const;
 
 private:
+    SmoothFunction::Point forms_at(const double* X) const;
+
     std::vector<SparseForm> forms_;
-    std::vector<double> stated_;
+    std::vector<double> stated_;   ///< forms there
+    CoordinateKind kind_;
 };
 
 }   // namespace livens::inline diagnostics_internal

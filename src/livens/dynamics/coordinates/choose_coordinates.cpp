@@ -21,6 +21,7 @@ using Of = GeneralisedCoordinate::Of;
 struct Candidate {
     GeneralisedCoordinate coordinate;
     int first_row = 0;
+    bool is_numbered = false;   ///< see NamedCoordinate::is_numbered()
     bool is_taken = false;
 };
 
@@ -39,8 +40,10 @@ std::vector<Candidate> candidates_of(const Model& model)
     }
     for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
         const Joint& joint = model.joints()[j];
-        for (int k = 0; k < static_cast<int>(joint.coordinates.size()); ++k)
+        for (int k = 0; k < static_cast<int>(joint.coordinates.size()); ++k) {
             add(Of::joint, j, k, joint.name + "." + joint.coordinates[k].name);
+            all.back().is_numbered = joint.coordinates[k].is_numbered();
+        }
     }
     return all;
 }
@@ -186,9 +189,9 @@ void take_of_bodies(Choice& choice, const Model& model)
          "coordinates do not tell where the mechanism is: " + std::to_string(n) +
              (n == 1 ? " freedom follows" : " freedoms follow") + " from none" +
              (bodies.empty() ? "" : ", which turn bodies " + bodies),
-         "", "", "joints such as universal ones leave turns about two axes free, which are no coordinates",
-         "make such a joint of two revolute ones with a small body between, or place the body's "
-         "reference point away from the joint"});
+         "", "",
+         "joints such as constant_velocity and perpendicular_axes leave turns free that are no coordinates",
+         "give a spherical joint 'angles', or place the body's reference point away from the joint"});
 }
 
 }   // namespace
@@ -199,8 +202,10 @@ std::vector<GeneralisedCoordinate> choose_coordinates(const Model& model, const 
 {
     Choice choice(model, placed, independent);
     take_wanted(choice, wanted);
-    for (Candidate& c : choice.all())
-        if (c.coordinate.of == Of::joint && choice.n_left() > 0) choice.take(c);
+    for (const bool is_numbered : {false, true})
+        for (Candidate& c : choice.all())
+            if (c.coordinate.of == Of::joint && c.is_numbered == is_numbered && choice.n_left() > 0)
+                choice.take(c);
     if (choice.n_left() > 0) take_of_bodies(choice, model);
     if (choice.n_left() > 0) refuse_missing(choice, model);
     std::vector<GeneralisedCoordinate> taken;

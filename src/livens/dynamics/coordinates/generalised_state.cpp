@@ -208,7 +208,26 @@ std::vector<double> StateParts::less_loads(std::span<const double> accelerations
         forces[b] -= weight[b];
         if (!loads.empty()) forces[b] -= loads[b];
     }
-    return along(forces);
+    std::vector<double> rows = along(forces);
+    add_rotors(twists, rows);
+    return rows;
+}
+
+/// a q'' of each rotor by the slopes of its coordinate.
+void StateParts::add_rotors(std::span<const double> accelerations, std::vector<double>& along_rates) const
+{
+    if (mechanism->rotors.empty()) return;
+    std::vector<Matrix34> second = rates_of_bodies(accelerations);
+    for (std::size_t b = 0; b < second.size(); ++b) second[b] = second[b] + centripetal[b];
+    for (const Rotor& rotor : mechanism->rotors) {
+        const ConstraintRow row = coupling_row({{1, rotor.coordinate}}, 0, 1, "rotor");
+        const double torque =
+            rotor.inertia * (coordinate_rate(rotor.coordinate, placed.X, second) +
+                             constraint_curvature(row, {mechanism->placed.t}, placed.X, state.V));
+        for (int k = 0; k < mechanism->n_rates; ++k)
+            along_rates[k] += torque * coordinate_rate(rotor.coordinate, placed.X,
+                                                       rates_of_bodies(placed.by_rates.column(k)));
+    }
 }
 
 DenseMatrix StateParts::mass() const
@@ -223,6 +242,12 @@ DenseMatrix StateParts::mass() const
             const Matrix34 momentum = moved[k][b] * mechanism->model.bodies()[b].mass;
             for (int i = 0; i <= k; ++i) M(i, k) += dot(moved[i][b], momentum);
         }
+    for (const Rotor& rotor : mechanism->rotors) {
+        std::vector<double> slope;
+        for (int k = 0; k < n; ++k) slope.push_back(coordinate_rate(rotor.coordinate, placed.X, moved[k]));
+        for (int k = 0; k < n; ++k)
+            for (int i = 0; i <= k; ++i) M(i, k) += rotor.inertia * slope[i] * slope[k];
+    }
     for (int k = 0; k < n; ++k)
         for (int i = 0; i < k; ++i) M(k, i) = M(i, k);
     return M;
@@ -339,7 +364,7 @@ std::vector<double> GeneralisedState::drift(int body, const Vector3& point) cons
 
 double GeneralisedState::kinetic_energy() const
 {
-    double energy = 0;
+    double energy = rotor_energy(parts_->mechanism->rotors, state().X, state().V);
     const std::vector<Body>& bodies = model().bodies();
     for (std::size_t b = 0; b < bodies.size(); ++b)
         energy += 0.5 * dot(state().V[b] * bodies[b].mass, state().V[b]);

@@ -39,13 +39,14 @@ class GeneralisedState;
 /// where these are placed.
 ///
 /// Drives are released: whoever states the coordinates drives them. Joints that do not act at the instant are
-/// left out. Chosen are the wanted ones; then coordinates of joints, in the order of the model; then what
-/// these leave free, by positions and orientations of bodies: of a free body all six. In the list bodies
-/// stand before joints.
+/// left out. Chosen are the wanted ones; then coordinates of joints, in the order of the model, numbered ones
+/// (angle_1) last; then what these leave free, by positions and orientations of bodies: of a free body all
+/// six. In the list bodies stand before joints.
 ///
 /// Throws InputError: `coordinate-unknown`, `coordinate-twice`; `coordinates-dependent` for a wanted one that
 /// joints or the wanted ones before it determine; `coordinates-missing` where something can still move, such
-/// as the two turns of a universal joint; `coordinates-singular`; and what consistent_start() throws.
+/// as the turns that a joint of constant velocity leaves; `coordinates-singular`; and what consistent_start()
+/// throws.
 class GeneralisedCoordinates {
 public:
     GeneralisedCoordinates(const Model& model, const State& placed, StartPolicy policy,

@@ -129,7 +129,7 @@ void follow_turns(const Mechanism& mechanism, const Configuration& X, Placed& at
     for (std::size_t i = 0; i < at.counted.size(); ++i) {
         const JointCoordinate& q = mechanism.counted[i].coordinate;
         const double value = mechanism.counted[i].at_stated + coordinate_change(q, mechanism.stated, X);
-        at.counted[i] = q.is_angle() ? turned_to(value, at.counted[i]) : value;
+        at.counted[i] = q.counts_turns() ? turned_to(value, at.counted[i]) : value;
     }
 }
 

@@ -55,8 +55,8 @@ Vector3 turn(const Matrix3& from, const Matrix3& to)
 
 Mechanism::Mechanism(const Model& the_model, const State& at, StartPolicy policy,
                      const std::vector<std::string>& wanted)
-    : model(released(the_model, at.t)), bodies(model), loads(model), length(model.length()),
-      stated(model.start().X)
+    : model(released(the_model, at.t)), bodies(model), loads(model), rotors(rotors_of(model)),
+      length(model.length()), stated(model.start().X)
 {
     for (const Joint& joint : model.joints())
         counted.insert(counted.end(), joint.coordinates.begin(), joint.coordinates.end());

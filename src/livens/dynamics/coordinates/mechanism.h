@@ -10,6 +10,7 @@
 #include "livens/dynamics/coordinates/generalised_state.h"
 #include "livens/dynamics/rows/body_tables.h"
 #include "livens/dynamics/rows/load_tables.h"
+#include "livens/multibody/rotors.h"
 #include "livens/solvers/dense_matrix.h"
 #include "livens/solvers/sparse.h"
 
@@ -34,6 +35,7 @@ struct Mechanism {
     Model model;   ///< joints that act, without drives
     BodyTables bodies;
     LoadTables loads;
+    std::vector<Rotor> rotors;
     double length;
     Configuration stated;                   ///< where coordinates of joints begin to count
     std::vector<NamedCoordinate> counted;   ///< of all joints

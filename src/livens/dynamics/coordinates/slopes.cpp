@@ -61,9 +61,9 @@ std::vector<Matrix34> change_of_loads(const StateParts& parts, std::span<const M
         const Load& load = m.model.loads()[l];
         const LoadArguments arguments =
             m.loads.arguments(l, {m.placed.t}, parts.state.X[0].a, parts.state.V[0].a, parts.placed.angles);
-        LoadTangent tangent(load.bodies.size());
+        LoadTangent tangent(load.bodies.size(), load.n_acted);
         load.tangent(arguments, tangent);
-        for (std::size_t on = 0; on < 2; ++on) {
+        for (std::size_t on = 0; on < load.n_acted; ++on) {
             if (load.bodies[on] == world) continue;
             Matrix34& F = change[static_cast<std::size_t>(load.bodies[on])];
             for (std::size_t by = 0; by < load.bodies.size(); ++by) {

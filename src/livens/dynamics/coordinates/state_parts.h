@@ -42,6 +42,7 @@ struct StateParts {
 private:
     std::vector<double> drifting_twists() const;
     std::vector<Matrix34> inertia_of(std::span<const double> accelerations) const;
+    void add_rotors(std::span<const double> accelerations, std::vector<double>& along_rates) const;
 };
 
 }   // namespace livens::inline dynamics_internal

@@ -7,6 +7,7 @@
 #include "livens/dynamics/rows/rank.h"
 #include "livens/dynamics/rows/rows.h"
 #include "livens/multibody/loads/load_laws.h"
+#include "livens/multibody/rotors.h"
 
 namespace livens {
 
@@ -27,7 +28,8 @@ Model without_drives(const Model& model)
 
 std::vector<double> inertias_along(const Model& all, std::span<const JointCoordinate> coordinates)
 {
-    const Model model = without_drives(all);
+    const Model held = without_drives(all);
+    const Model model = held.has_rotors() ? WithRotors(held).model() : held;
     const State start = model.start();
     const std::vector<Matrix34> rest(start.X.size());
     const ModelTables tables(model, row_rank(model, start.X, all_rows(model)).independent);

@@ -52,9 +52,9 @@ void LoadTables::add_one(int l, Instant instant, const double* X, const double* 
                          std::span<const double> angles) const
 {
     const Load& load = model_.loads()[l];
-    LoadForces forces{};
+    LoadForces forces(load.n_acted);
     load.forces(arguments(l, instant, X, V, angles), forces);
-    for (int side = 0; side < 2; ++side) {
+    for (std::size_t side = 0; side < load.n_acted; ++side) {
         if (load.bodies[side] == world) continue;
         double* f = raw + 12 * load.bodies[side];
         for (int i = 0; i < 12; ++i) f[i] += factor * forces[side].a[i];
@@ -65,7 +65,7 @@ int LoadTables::bad(Instant instant, const double* X, const double* V, std::span
 {
     for (std::size_t l = 0; l < model_.loads().size(); ++l) {
         const Load& load = model_.loads()[l];
-        LoadForces forces{};
+        LoadForces forces(load.n_acted);
         load.forces(arguments(static_cast<int>(l), instant, X, V, angles), forces);
         double sum = 0;
         for (const Matrix34& F : forces)

@@ -24,6 +24,9 @@ bool is_driven_angle(const Joint& joint)
     return joint.type == "drive" && joint.rows.size() == 1 && joint.branches.size() == 1;
 }
 
+/// Also by its sine alone, up to a quarter turn.
+bool drives_angle(const Model& model, int row) { return model.row(row).label.starts_with("driven angle"); }
+
 /// The row of a driven angle is the sine of what it is off, its branch the cosine: the gradient of the sine
 /// vanishes at a quarter of a turn and leads to half a turn beyond. The angle itself leads back.
 Joint by_angle(const Joint& joint)
@@ -120,7 +123,8 @@ std::optional<double> missing(const Model& model, int row, std::span<const Matri
     const Joint& joint = model.joints()[model.row_joint(row)];
     if (joint.type != "drive") return {};
     if (is_driven_angle(joint)) return constraint_value(by_angle(joint).rows[0], X);
-    const bool is_linear = model.row(row).label != "driven distance" && joint.branches.empty();
+    const bool is_linear =
+        model.row(row).label != "driven distance" && joint.branches.empty() && !drives_angle(model, row);
     if (is_linear) return constraint_value(model.row(row), X);
     return {};
 }
@@ -228,7 +232,7 @@ std::string drive_words(const Model& model, int row, std::span<const Matrix34> X
     const Joint& joint = model.joints()[model.row_joint(row)];
     if (joint.type != "drive") return "";
     const std::optional<double> by = missing(model, row, X);
-    const char* const unit = is_driven_angle(joint) ? " rad" : " m";
+    const char* const unit = drives_angle(model, row) ? " rad" : " m";
     return ": its law is " + (by ? to_text(std::abs(*by), 4) + unit + " from" : "elsewhere, not") +
            " where the bodies stand";
 }
@@ -238,7 +242,7 @@ std::string drive_help(const Model& model, int row, std::span<const Matrix34> X)
     const Joint& joint = model.joints()[model.row_joint(row)];
     if (joint.type != "drive") return "";
     const std::optional<double> by = missing(model, row, X);
-    const bool is_angle = is_driven_angle(joint);
+    const bool is_angle = drives_angle(model, row);
     const std::string law =
         by ? "add " + to_text(*by) + (is_angle ? " rad" : " m") + " to its law" : "let its law begin there";
     const bool is_of_joint = is_angle || model.row(row).label == "driven displacement";

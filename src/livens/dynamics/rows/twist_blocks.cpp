@@ -71,7 +71,7 @@ double load_terms(const ModelTables& tables, const Load& load, const LoadArgumen
                   const LoadTangent& tangent)
 {
     double size = 0;
-    for (int r = 0; r < 2; ++r) {
+    for (std::size_t r = 0; r < load.n_acted; ++r) {
         if (load.bodies[r] == world) continue;
         const auto& body = tables.bodies[load.bodies[r]];
         double root = 0;

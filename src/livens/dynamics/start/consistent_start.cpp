@@ -18,6 +18,7 @@
 #include "livens/dynamics/rows/rows.h"
 #include "livens/dynamics/start/rate_changes.h"
 #include "livens/dynamics/start/start_speeds.h"
+#include "livens/multibody/rotors.h"
 #include "livens/multibody/wording.h"
 
 namespace livens {
@@ -43,9 +44,13 @@ Fault clean(const Model& model, State& state)
 {
     const std::size_t n = model.bodies().size();
     if (state.X.size() != n || state.V.size() != n) {
-        return Complaint{"start-position", "start", "the start does not have one X and one V for every body",
+        return Complaint{"start-position",
+                         "start",
+                         "the start does not have one X and one V for every body",
                          std::to_string(state.X.size()) + " and " + std::to_string(state.V.size()),
-                         std::to_string(n), "", "begin with Model::start()"};
+                         std::to_string(n),
+                         "",
+                         "begin with Model::start()"};
     }
     for (int b = 0; b < model.n_bodies(); ++b) {
         const std::string path = "body[" + model.body_name(b) + "]";
@@ -93,15 +98,23 @@ Fault settle_directors(const Model& model, StartPolicy policy, State& state, std
         if (std::abs(worst.value) <= 4 * epsilon && determinant(D) > 0) continue;
         const std::string path = "body[" + model.body_name(b) + "].directors";
         if (determinant(D) <= 0) {
-            return Complaint{"start-position", path, "the directors are not a right-handed triad",
-                             "determinant " + number(determinant(D)), "1", "d1 x d2 = d3",
+            return Complaint{"start-position",
+                             path,
+                             "the directors are not a right-handed triad",
+                             "determinant " + number(determinant(D)),
+                             "1",
+                             "d1 x d2 = d3",
                              "change the sign of one director"};
         }
         if (std::abs(worst.value) > start_tolerance) {
             if (policy == StartPolicy::check) {
-                return Complaint{"start-position", path,
+                return Complaint{"start-position",
+                                 path,
                                  "the directors are not orthonormal: " + worst.name + " is wrong",
-                                 number(worst.value), number(start_tolerance), "", project_help};
+                                 number(worst.value),
+                                 number(start_tolerance),
+                                 "",
+                                 project_help};
             }
             D = project_directors(D);
             notes.push_back("the directors of body '" + model.body_name(b) + "' were made orthonormal (" +
@@ -122,6 +135,7 @@ void note_moves(const Model& model, std::span<const Matrix34> before, std::span<
 {
     const double length = model.length();
     for (int b = 0; b < model.n_bodies(); ++b) {
+        if (model.bodies()[b].is_rotor) continue;
         const double shift = norm(after[b].column(0) - before[b].column(0));
         double turn = 0;
         for (int i = 1; i < 4; ++i) turn = std::max(turn, norm(after[b].column(i) - before[b].column(i)));
@@ -142,8 +156,7 @@ Fault settle_positions(const Model& model, StartPolicy policy, State& state, std
     const bool is_other = projects && closing.closed && !is_in_its_branch(model, closing.X);
     if (is_open && (!closing.closed || is_other)) {
         Reach other = reach(model, state.X);
-        if (!other.closing.closed && !closing.closed)
-            return why_open(model, closing, state.X, other.n_tries);
+        if (!other.closing.closed && !closing.closed) return why_open(model, closing, state.X, other.n_tries);
         if (other.closing.closed) closing = std::move(other.closing);
         if (projects && !other.how.empty()) notes.push_back(other.how);
     }
@@ -184,7 +197,7 @@ struct RateGap {
 /// `drives`: drive_rates(). The bound is of G V alone: a drive that is slower than bodies move does not
 /// matter, and one that is faster is a fault.
 RateGap worst_rate(const Model& model, const State& state, const RowWrenches& wrenches,
-                     std::span<const Vector3> centers, std::span<const double> drives, double speed)
+                   std::span<const Vector3> centers, std::span<const double> drives, double speed)
 {
     RateGap fault;
     const double length = model.length();
@@ -227,8 +240,8 @@ RateGap worst_rate(const Model& model, const State& state, const RowWrenches& wr
 
 /// `model`: of positions, frozen; `the_model`: with its drives.
 Fault settle_velocities(const Model& model, const Model& the_model, StartPolicy policy,
-                       const RowWrenches& wrenches, std::span<const int> independent,
-                       std::span<const double> drives, State& state, std::vector<std::string>& notes)
+                        const RowWrenches& wrenches, std::span<const int> independent,
+                        std::span<const double> drives, State& state, std::vector<std::string>& notes)
 {
     const std::vector<Vector3> centers = centers_of_mass(model);
     const double stated = largest_speed(model, state, centers),
@@ -271,15 +284,17 @@ Fault why_weightless(const Model& model, std::span<const Matrix34> X)
     for (double& a : axis.a) a = std::abs(a) < 1e-9 ? 0.0 : a;
     const std::string name = model.body_name(spin->body);
     return Complaint{
-        "spin-without-inertia", "body[" + name + "].inertia",
-         "body '" + name + "' can spin about an axis without inertia, and no joint holds this spin",
-         "axis (" + number(axis[0]) + ", " + number(axis[1]) + ", " + number(axis[2]) + ") in the world", "",
-         spin->by_digits ? "the reference point is so far from the centre of mass that the mass matrix holds "
-                           "no digit of this inertia"
-                         : "its motion has no equation",
-         spin->by_digits ? "choose a reference point near the body"
-                         : "give the body inertia about this axis, hold the spin by a joint, or use a point "
-                           "mass"};
+        "spin-without-inertia",
+        "body[" + name + "].inertia",
+        "body '" + name + "' can spin about an axis without inertia, and no joint holds this spin",
+        "axis (" + number(axis[0]) + ", " + number(axis[1]) + ", " + number(axis[2]) + ") in the world",
+        "",
+        spin->by_digits ? "the reference point is so far from the centre of mass that the mass matrix holds "
+                          "no digit of this inertia"
+                        : "its motion has no equation",
+        spin->by_digits ? "choose a reference point near the body"
+                        : "give the body inertia about this axis, hold the spin by a joint, or use a point "
+                          "mass"};
 }
 
 /// One sentence a joint on its redundant rows, which ascend.
@@ -296,15 +311,33 @@ void note_redundancy(const Model& model, ConsistentStart& assembly)
                                  (count == n_rows ? "redundant (all of its " : "partly redundant (") +
                                  (count == n_rows ? "" : std::to_string(count) + " of ") +
                                  std::to_string(n_rows) + " constraint" + (n_rows == 1 ? "" : "s") + ": " +
-                                 rows +
-                                 "): reactions in this loop are not unique");
+                                 rows + "): reactions in this loop are not unique");
     }
+}
+
+}   // namespace
+
+namespace {
+
+/// Rotors move along with what they are bound to, and count where something is moved.
+TriedStart try_with_rotors(const Model& model, const State& start, StartPolicy policy)
+{
+    const WithRotors rotors(model);
+    TriedStart tried = try_consistent_start(rotors.model(), rotors.with(start), policy);
+    if (!tried.closed) return tried;
+    rotors.take_off(tried.closed->start);
+    for (auto* rows : {&tried.closed->independent, &tried.closed->redundant})
+        std::erase_if(*rows, [&](int row) { return row >= rotors.n_rows(); });
+    return tried;
 }
 
 }   // namespace
 
 TriedStart try_consistent_start(const Model& the_model, const State& start, StartPolicy policy)
 {
+    const std::size_t n = the_model.bodies().size();
+    if (the_model.has_rotors() && start.X.size() == n && start.V.size() == n)
+        return try_with_rotors(the_model, start, policy);
     ConsistentStart closed;
     closed.start = start;
     std::optional<Model> now;

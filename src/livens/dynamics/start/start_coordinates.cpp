@@ -86,11 +86,13 @@ std::vector<Led> all_coordinates(const Model& model, const std::vector<StartCoor
                    "there");
         all.push_back(led);
     }
-    for (int j = 0; j < static_cast<int>(model.joints().size()); ++j)
-        for (int k = 0; k < static_cast<int>(model.joints()[j].coordinates.size()); ++k) {
-            const double now = model.joints()[j].coordinates[k].at_stated;
-            if (!find(j, k)) all.push_back({j, k, false, false, now, now, 0});
-        }
+    for (const bool is_numbered : {false, true})
+        for (int j = 0; j < static_cast<int>(model.joints().size()); ++j)
+            for (int k = 0; k < static_cast<int>(model.joints()[j].coordinates.size()); ++k) {
+                const NamedCoordinate& one = model.joints()[j].coordinates[k];
+                if (one.is_numbered() == is_numbered && !find(j, k))
+                    all.push_back({j, k, false, false, one.at_stated, one.at_stated, 0});
+            }
     return all;
 }
 
@@ -257,7 +259,12 @@ Model restated(const Model& model, const State& state, const std::vector<Led>& a
     }
     std::vector<Joint> joints = model.joints();
     for (const Led& led : all) joints[led.joint].coordinates[led.coordinate].at_stated = led.to;
-    for (Joint& joint : joints) moved.add_joint(std::move(joint));
+    const std::vector<Matrix34> before = model.start().X;
+    for (Joint& joint : joints) {
+        for (NamedCoordinate& read : joint.readings)
+            read.at_stated += coordinate_change(read.coordinate, before, state.X);
+        moved.add_joint(std::move(joint));
+    }
     for (const NamedPoint& point : model.points()) moved.add_point(point);
     return moved;
 }
@@ -377,7 +384,7 @@ Model restated(const Model& model, const State& state, const std::vector<StartCo
         led.to = led.from + coordinate_change(q, stated, state.X);
         for (const StartCoordinate& one : counted) {
             const bool is_this = one.joint == led.joint && one.coordinate == led.coordinate;
-            if (!is_this || !one.value || !q.is_angle()) continue;
+            if (!is_this || !one.value || !q.counts_turns()) continue;
             const double turned = turned_to(led.to, *one.value);
             if (std::abs(*one.value - turned) <= same_angle) led.to = turned;
         }

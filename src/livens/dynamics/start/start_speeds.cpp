@@ -29,9 +29,9 @@ double acceleration_by_loads(const Model& model, const State& state)
 {
     std::vector<Matrix34> F(state.X.size(), Matrix34{});
     for (const Load& load : model.loads()) {
-        LoadForces forces{};
+        LoadForces forces(load.n_acted);
         load.forces(load_arguments(load, {state.t}, state.X, state.V), forces);
-        for (std::size_t b = 0; b < 2; ++b)
+        for (std::size_t b = 0; b < load.n_acted; ++b)
             if (load.bodies[b] != world) F[static_cast<std::size_t>(load.bodies[b])] += forces[b];
     }
     double most = 0;

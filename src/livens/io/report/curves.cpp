@@ -89,8 +89,10 @@ public:
     {
         for (const char* const name : {"kinetic", "potential"}) channels_.push_back({"energy", 0, name, "J"});
         for (std::size_t i = 0; i < coordinates_.places().size(); ++i) {
-            const std::string& name = coordinates_.coordinate(static_cast<int>(i)).name;
-            const char* const unit = name == "angle" ? "rad" : "m";
+            const NamedCoordinate& q = coordinates_.coordinate(static_cast<int>(i));
+            std::string name = q.name;
+            std::ranges::replace(name, '_', ' ');
+            const char* const unit = q.coordinate.is_angle() ? "rad" : "m";
             const int joint = coordinates_.places()[i].joint;
             channels_.push_back({"joint", joint, name, unit});
             channels_.push_back({"joint", joint, name + " rate", std::string(unit) + "/s"});

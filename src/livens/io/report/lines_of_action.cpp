@@ -21,7 +21,7 @@ constexpr double negligible = 1e-6;   // of a load's largest force: there its po
 LoadForces forces_of(const Load& load, const State& state, std::span<const double> angles,
                      Side side = Side::right)
 {
-    LoadForces F{};
+    LoadForces F(load.n_acted);
     load.forces(load_arguments(load, {state.t, side}, state.X, state.V, angles), F);
     return F;
 }

@@ -236,6 +236,18 @@ RowDirections axes_of(const Joint& joint)
     return {};
 }
 
+/// The points that a rope runs over.
+void write_over(JsonWriter& json, const std::vector<BodyPoint>& over)
+{
+    json.key("over").begin_array();
+    for (const BodyPoint& at : over) {
+        json.begin_object().member("body", at.body);
+        add(json, "point", at.point);
+        json.end_object();
+    }
+    json.end_array();
+}
+
 void write_joints(JsonWriter& json, const Model& model)
 {
     json.key("joints").begin_array();
@@ -243,7 +255,8 @@ void write_joints(JsonWriter& json, const Model& model)
         const RowDirections axes = axes_of(joint);
         json.begin_object().member("name", joint.name).member("type", joint.type);
         const auto is_driven = [](const ConstraintRow& row) { return row.label == "driven distance"; };
-        json.member("bar", joint.type == "rod" || std::ranges::any_of(joint.rows, is_driven));
+        json.member("bar", (joint.type == "rod" && joint.over.empty()) ||
+                               std::ranges::any_of(joint.rows, is_driven));
         json.member("first", joint.first).member("second", joint.second);
         add(json, "point_first", joint.point_first);
         add(json, "point_second", joint.point_second);
@@ -255,7 +268,9 @@ void write_joints(JsonWriter& json, const Model& model)
         }
         json.key("path").begin_array();
         for (const Vector3& place : joint.path) json.value(std::span<const double>(place.a));
-        json.end_array().end_object();
+        json.end_array();
+        write_over(json, joint.over);
+        json.end_object();
     }
     json.end_array();
 }
@@ -279,6 +294,7 @@ void write_loads(JsonWriter& json, const Model& model, const Motion& motion)
             add(json, "place", *lines[l].place);
         else
             json.key("place").null();
+        write_over(json, load.over);
         json.end_object();
     }
     json.end_array();

@@ -131,9 +131,16 @@ struct CoordinateVariable {
     const char *units, *meaning, *rate_units, *rate_meaning;
 };
 
-const std::array<CoordinateVariable, 2> coordinate_variables{
+const std::array<CoordinateVariable, 5> coordinate_variables{
     {{"angle", "angle", "rad", "angle of the joint since the start, turns counted", "rad s-1",
       "rate of the joint's angle"},
+     {"angle_1", "angle_1", "rad", "first angle of the joint, turns counted", "rad s-1",
+      "rate of the joint's first angle"},
+     {"angle_2", "angle_2", "rad",
+      "second angle of the joint: of a universal joint with turns, of a ball joint within 90 degrees",
+      "rad s-1", "rate of the joint's second angle"},
+     {"angle_3", "angle_3", "rad", "third angle of the joint, turns counted", "rad s-1",
+      "rate of the joint's third angle"},
      {"displacement", "displacement", "m", "displacement of the joint since the start", "m s-1",
       "rate of the joint's displacement"}}};
 

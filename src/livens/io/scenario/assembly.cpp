@@ -159,6 +159,8 @@ void Assembly::settle()
                 builder_.model().joints()[static_cast<std::size_t>(part->first_joint_) + j];
             for (std::size_t q = 0; q < joint.coordinates.size(); ++q)
                 joint.coordinates[q].at_stated = in_whole.coordinates[q].at_stated;
+            for (std::size_t q = 0; q < joint.readings.size(); ++q)
+                joint.readings[q].at_stated = in_whole.readings[q].at_stated;
             there.add_joint(std::move(joint));
         }
         for (const NamedPoint& point : own.points()) there.add_point(point);

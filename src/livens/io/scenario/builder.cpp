@@ -261,6 +261,13 @@ std::string default_name(const Section& section)
     if (section.is_implied("body")) return type + " on " + section.find("point")->text;
     for (const char* key : {"between", "joints"})
         if (const Value* two = section.find(key)) return type + " " + two->texts[0] + "-" + two->texts[1];
+    if (const std::span<const Section> over = section.sections("over"); !over.empty()) {
+        std::string name = type;
+        for (const Section& at : over)
+            name += (name == type ? " " : "-") +
+                    (at.is_implied("body") ? at.find("point")->text : at.text("body"));
+        return name;
+    }
     if (const Value* terms = section.find("terms")) {
         std::string name = type;
         for (const Entry& term : terms->node->entries()) name += (name == type ? " " : "-") + term.key;

@@ -3,7 +3,9 @@
 // has the rows, their derivatives and why the row of an angle is regular at every angle.
 #include "livens/multibody/joints/drives.h"
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "livens/base/elementary.h"
@@ -16,14 +18,23 @@ namespace livens {
 
 namespace {
 
-double form_at(const PairForm& form, const Configurations& X)
+/// A number while the angle is within a quarter turn, where nothing but its sine is held.
+TimeFunction sine_of(const TimeFunction& angle)
 {
-    return form_value(form, form.body_i, form.body_j, X);
+    const auto sine = [angle](Instant at) {
+        const TimeValue f = angle(at);
+        if (!(std::abs(f.value) < 0.5 * std::numbers::pi))
+            return TimeValue{std::numeric_limits<double>::quiet_NaN(), 0, 0};
+        const auto [s, c] = sine_cosine(f.value);
+        return TimeValue{s, c * f.first, c * f.second - s * f.first * f.first};
+    };
+    return {sine, angle.breaks()};
 }
 
 }   // namespace
 
-/// An angle q = atan2(s, c) follows f by cos(f) s - sin(f) c = 0, which also admits half a turn more.
+/// An angle q = atan2(s, c) follows f by cos(f) s - sin(f) c = 0, which also admits half a turn more; one
+/// that is an arc sine by its sine.
 Joint driven_coordinate(const std::string& name, const Joint& joint, const NamedCoordinate& coordinate,
                         const TimeFunction& law, const Configurations& X)
 {
@@ -39,10 +50,19 @@ Joint driven_coordinate(const std::string& name, const Joint& joint, const Named
     row.body_i = forms[0].body_i;
     row.body_j = forms[0].body_j;
     row.label = "driven " + coordinate.name;
+    const double now = coordinate_value(coordinate.coordinate, X);
+    if (coordinate.coordinate.kind == CoordinateKind::arc_sine) {
+        static_cast<PairForm&>(row) = forms[0];
+        QuadraticForm one;
+        one.c = -1;
+        row.drives.push_back({sine_of(shifted(law, now - coordinate.at_stated)), one});
+        driven.rows = {row};
+        return driven;
+    }
     if (!coordinate.coordinate.is_angle()) {
         // The law counts from the stated value of the coordinate; its form counts from where the bodies
         // stand.
-        const TimeFunction raw = shifted(law, form_at(forms[0], X) - coordinate.at_stated);
+        const TimeFunction raw = shifted(law, now - coordinate.at_stated);
         static_cast<PairForm&>(row) = forms[0];
         QuadraticForm one;
         one.c = -1;
@@ -50,7 +70,6 @@ Joint driven_coordinate(const std::string& name, const Joint& joint, const Named
         driven.rows = {row};
         return driven;
     }
-    const double now = arc_tangent(form_at(forms[1], X), form_at(forms[0], X));
     const TimeFunction angle = shifted(law, now - coordinate.at_stated);
     const auto sine = [=](Instant at) {
         const TimeValue f = angle(at);

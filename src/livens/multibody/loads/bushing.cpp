@@ -8,6 +8,7 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/multibody/joints.h"
 #include "livens/multibody/loads/load_coordinate.h"
 #include "livens/multibody/loads/load_laws.h"
 #include "livens/multibody/loads/load_values.h"
@@ -323,41 +324,6 @@ void check_matrix(const std::string& name, const Matrix<6, 6>& A, const std::str
     if (is_negative(A)) refuse("is negative for some displacement", "");
 }
 
-/// s1, s2, s3 and c of two triads.
-std::vector<PairForm> sine_and_cosine_forms(int first, const BodyFrame& frame_first, int second,
-                                            const BodyFrame& frame_second)
-{
-    const auto axis = [](const BodyFrame& frame, int k) { return direction(frame.axes.column(k)); };
-    const auto product = [&](int k, int l) {   // a_k . b_l
-        return inner_product_row(first, axis(frame_first, k), second, axis(frame_second, l), 0, 1);
-    };
-    const auto sum = [](const ConstraintRow& a, double factor, const ConstraintRow& b) {
-        PairForm form = a;
-        form.c_ij += factor * b.c_ij;
-        form.b_i += factor * b.b_i;
-        form.b_j += factor * b.b_j;
-        form.c += factor * b.c;
-        return form;
-    };
-    const auto halved = [](PairForm form, double more) {
-        form.c_ij *= 0.5;
-        form.b_i *= 0.5;
-        form.b_j *= 0.5;
-        form.c = 0.5 * form.c + more;
-        return form;
-    };
-    std::vector<PairForm> forms;
-    for (int k = 0; k < 3; ++k) {
-        const int l = (k + 1) % 3, m = (k + 2) % 3;
-        forms.push_back(halved(sum(product(m, l), -1, product(l, m)), 0));
-    }
-    ConstraintRow trace = product(0, 0);
-    // c = (a1.b1 + a2.b2 + a3.b3 - 1) / 2, the cosine of the turn between both triads.
-    static_cast<PairForm&>(trace) = sum(trace, 1, product(1, 1));
-    forms.push_back(halved(sum(trace, 1, product(2, 2)), -0.5));
-    return forms;
-}
-
 }   // namespace
 
 Load bushing(const std::string& name, int first, const BodyFrame& frame_first, int second,
@@ -381,12 +347,33 @@ Load bushing(const std::string& name, int first, const BodyFrame& frame_first, i
             parts.coordinates.push_back(q);
         add_law(parts, SpinningBushing{{{law.stiffness, {}, law.preload}}, {law.damping, true}});
     } else {
-        for (const PairForm& form : sine_and_cosine_forms(first, frame_first, second, frame_second))
+        for (const PairForm& form :
+             rotation_angle(first, second, {frame_first.axes, frame_second.axes}).forms)
             add(form);
         add_law(parts, BushingLaw{law});
     }
     for (const LawCoordinate& q : parts.coordinates) parts.units.push_back(unit_along(name, q.coordinate, X));
     return modulated(name, "bushing", parts, X);
+}
+
+Load ball_spring(const std::string& name, const Joint& joint, double stiffness, double damping,
+                 const Configurations& X)
+{
+    const Load checked = start_load(name, "bushing", {joint.second, joint.first});
+    check_not_negative(checked, stiffness, "stiffness");
+    check_not_negative(checked, damping, "damping");
+    Bushing law;
+    law.by_angular_velocity = true;
+    for (int k = 3; k < 6; ++k) {
+        law.stiffness(k, k) = stiffness;
+        law.damping(k, k) = damping;
+    }
+    Load load = bushing(name, joint.first, {joint.point_first, joint.triads.first}, joint.second,
+                        {joint.point_second, joint.triads.second}, law, X);
+    std::erase_if(load.readings, [](const LoadReading& reading) {
+        return reading.name.starts_with("force") || reading.name.starts_with("displacement");
+    });
+    return load;
 }
 
 }   // namespace livens

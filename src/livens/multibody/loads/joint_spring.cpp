@@ -166,6 +166,25 @@ struct AlongJoint {
     }
 };
 
+/// Where nobody knows the coordinate.
+const char* domain_of(CoordinateKind kind)
+{
+    switch (kind) {
+    case CoordinateKind::displacement:
+        return "";
+    case CoordinateKind::angle:
+        return "this family knows its angle up to 175 degrees from where the joint stands at the start";
+    case CoordinateKind::outer_angle:
+    case CoordinateKind::arc_sine:
+        return "three angles of a ball joint are not unique where the second one is 90 degrees, and end 0.6 "
+               "degrees before";
+    case CoordinateKind::rotation_component:
+    case CoordinateKind::rotation_angle:
+        break;
+    }
+    return "the rotation vector of a ball joint changes its sign at half a turn, and ends at 175 degrees";
+}
+
 void check_joint_spring(const Load& load, const JointSpring& spring, const JointLimits& limits)
 {
     check_not_negative(load, spring.stiffness, "stiffness");
@@ -199,11 +218,9 @@ Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, co
     load.depends_on_V = spring.damping > 0 || (limits.acts() && limits.damping > 0);
     load.needs_directors = of.along.needs_directors();
     // A damper alone does not read the angle, so it works in families that do not count turns.
-    const bool counts_turns = is_angle && (of.is_elastic() || spring.preload != 0 || !of.limits.empty());
-    of.along.place(load, counts_turns);
-    if (counts_turns)
-        load.domain =
-            "this family knows its angle up to 175 degrees from where the joint stands at the start";
+    const bool reads_angle = is_angle && (of.is_elastic() || spring.preload != 0 || !of.limits.empty());
+    of.along.place(load, reads_angle);
+    if (reads_angle) load.domain = domain_of(coordinate.coordinate.kind);
     load.forces = [of](const LoadArguments& arguments, LoadForces& F) {
         of.along.add_forces(arguments, of.force(of.along.look(arguments)).force, F);
     };

@@ -22,9 +22,10 @@ double value_of(const PairForm& form, const Configurations& X)
 }
 
 /// The same angle, zero in X: sine and cosine are turned.
-std::vector<PairForm> from(const std::vector<PairForm>& forms, const Configurations& X)
+JointCoordinate from(const JointCoordinate& coordinate, const Configurations& X)
 {
-    if (forms.size() == 1) return forms;
+    if (!coordinate.counts_turns()) return coordinate;
+    const std::vector<PairForm>& forms = coordinate.forms;
     const double c = value_of(forms[0], X), s = value_of(forms[1], X), size = hypotenuse(c, s, 0);
     const auto mixed = [&](double a, double b) {
         PairForm sum = forms[0];
@@ -39,7 +40,7 @@ std::vector<PairForm> from(const std::vector<PairForm>& forms, const Configurati
         return sum;
     };
     // Turned so that the angle is zero where the bodies stand: the cut of atan2 then lies half a turn away.
-    return {mixed(c, s), mixed(-s, c)};
+    return {{mixed(c, s), mixed(-s, c)}, coordinate.kind};
 }
 
 /// Positions do not tell whole turns: where nobody counts them, an angle nearer than this to half a turn is
@@ -63,7 +64,7 @@ bool turns(const PairForm& form, bool by_j)
 LoadCoordinate::LoadCoordinate(const JointCoordinate& coordinate, double at_stated, const Configurations& X)
     : at_start_(at_stated), offset_(at_stated)
 {
-    coordinate_ = {from(coordinate.forms, X)};
+    coordinate_ = from(coordinate, X);
     const PairForm& first = coordinate_.forms[0];
     bodies_ = {first.body_j, first.body_i};
     n_ = first.body_i == world ? 1 : 2;
@@ -71,28 +72,28 @@ LoadCoordinate::LoadCoordinate(const JointCoordinate& coordinate, double at_stat
         needs_directors_[0] = needs_directors_[0] || turns(form, true);
         needs_directors_[1] = needs_directors_[1] || (n_ == 2 && turns(form, false));
     }
-    if (!coordinate_.is_angle()) offset_ -= value_of(first, X);
+    if (!coordinate_.counts_turns()) offset_ -= coordinate_value(coordinate_, X);
 }
 
 void LoadCoordinate::place(Load& load, bool counts_turns)
 {
     const std::vector<int>& load_bodies = load.bodies;
-    if (coordinate_.is_angle() && counts_turns) {
+    if (coordinate_.counts_turns() && counts_turns) {
         angle_ = static_cast<int>(load.angles.size());
         load.angles.push_back(coordinate_);
     }
     for (std::size_t b = 0; b < n_; ++b)
         places_[b] = static_cast<int>(std::ranges::find(load_bodies, bodies_[b]) - load_bodies.begin());
-    std::vector<PairForm> forms = coordinate_.forms;
-    for (PairForm& form : forms) {
+    placed_ = coordinate_;
+    for (PairForm& form : placed_.forms) {
         form.body_j = places_[0];
         form.body_i = n_ == 2 ? places_[1] : world;
     }
     row_ = {};
-    if (forms.size() == 1)
-        static_cast<PairForm&>(row_) = forms[0];
+    if (!coordinate_.is_angle())
+        static_cast<PairForm&>(row_) = placed_.forms[0];
     else
-        row_ = coupling_row({{1, {forms}}}, 0, 1, "angle");
+        row_ = coupling_row({{1, placed_}}, 0, 1, "angle");
 }
 
 CoordinateState LoadCoordinate::look(const LoadArguments& arguments) const
@@ -106,6 +107,8 @@ CoordinateState LoadCoordinate::look(const LoadArguments& arguments) const
     } else if (angle_ >= 0 && std::abs(seen.value - at_start_) > widest_angle) {
         seen.value = std::numeric_limits<double>::quiet_NaN();
     }
+    if (coordinate_.is_angle() && !is_known(placed_, X))
+        seen.value = std::numeric_limits<double>::quiet_NaN();
     for (std::size_t b = 0; b < n_; ++b) seen.rate += dot(gradient.of(places_[b]), arguments.V[places_[b]]);
     return seen;
 }

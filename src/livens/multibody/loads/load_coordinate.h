@@ -35,7 +35,7 @@ public:
     /// As the model has it, an angle from where it is in X.
     const JointCoordinate& coordinate() const { return coordinate_; }
     /// Whose orientation it needs.
-    std::array<bool, 2> needs_directors() const { return needs_directors_; }
+    PerBody<char> needs_directors() const { return needs_directors_; }
     /// What it is at the start: the middle of the angles that it knows.
     double at_start() const { return at_start_; }
 
@@ -60,9 +60,12 @@ public:
     void pull(LoadTape& tape, TapeNumber Q) const;
 
 private:
-    JointCoordinate coordinate_;
+    /// The function of the forms, its gradient and the rate by it, on a tape.
+    struct OnTape;
+
+    JointCoordinate coordinate_, placed_;   ///< of the model, and with places for bodies
     std::array<int, 2> bodies_{world, world};
-    std::array<bool, 2> needs_directors_{};
+    PerBody<char> needs_directors_{};
     ConstraintRow row_;   ///< of q, with places for bodies
     double at_start_ = 0, offset_ = 0;
     std::array<int, 2> places_{};

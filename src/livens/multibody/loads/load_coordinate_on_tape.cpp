@@ -2,7 +2,10 @@
 // Coordinates of loads on a tape. Their forms are sums of inner products of material vectors, of which a
 // joint's have one or two (docs/theory.md, "Without a tangent",
 // Loads in lanes).
+#include <array>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "livens/base/elementary.h"
 #include "livens/multibody/loads/load_coordinate.h"
@@ -103,35 +106,105 @@ struct FormOnTape {
     }
 };
 
+/// The value where the square of a cosine tells that an angle is known; see is_known().
+double known_by_square(double value, double square)
+{
+    return square >= 1e-4 ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+double known_by_angle(double value, double angle)
+{
+    return angle <= 3.05 ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+double arc_sine_of(double s, double) { return arc_sine(s); }
+
 }   // namespace
 
-TapeNumber LoadCoordinate::value(LoadTape& tape) const
-{
-    const auto form = [&](std::size_t k) {
-        return FormOnTape{coordinate_.forms[k], places_, n_ == 2, tape}.value();
-    };
-    if (!coordinate_.is_angle()) return offset_ + form(0);
-    const TapeNumber angle = function_of(&arc_tangent, form(1), form(0));
-    return offset_ + (angle_ >= 0 ? tape.unwrapped(angle, angle_) : angle);
-}
+/// coordinate_at() on a tape: theory.md, "Coordinates of joints".
+struct LoadCoordinate::OnTape {
+    const LoadCoordinate& of;
+    LoadTape& tape;
+
+    FormOnTape form(std::size_t k) const { return {of.coordinate_.forms[k], of.places_, of.n_ == 2, tape}; }
+    TapeNumber q(std::size_t k) const { return form(k).value(); }
+    TapeNumber square() const { return q(0) * q(0) + q(1) * q(1); }
+    /// Of an arc sine.
+    TapeNumber square_of_cosine() const { return 1.0 + -(q(0) * q(0)); }
+    /// Of a rotation vector: the square of its sine, and its length.
+    TapeNumber sigma() const { return q(0) * q(0) + q(1) * q(1) + q(2) * q(2); }
+    TapeNumber length() const { return function_of(&arc_tangent, root(sigma()), q(3)); }
+
+    TapeNumber value() const
+    {
+        switch (of.coordinate_.kind) {
+        case CoordinateKind::displacement:
+            return of.offset_ + q(0);
+        case CoordinateKind::angle:
+            return of.offset_ + turned();
+        case CoordinateKind::outer_angle:
+            return of.offset_ + function_of(&known_by_square, turned(), square());
+        case CoordinateKind::arc_sine:
+            return of.offset_ +
+                   function_of(&known_by_square, function_of(&arc_sine_of, q(0), q(0)), square_of_cosine());
+        case CoordinateKind::rotation_component:
+            return of.offset_ + function_of(&known_by_angle, turn_of_sine(sigma(), q(3))[0] * q(0), length());
+        case CoordinateKind::rotation_angle:
+            break;
+        }
+        return of.offset_ + function_of(&known_by_angle, length(), length());
+    }
+    TapeNumber turned() const
+    {
+        const TapeNumber angle = function_of(&arc_tangent, q(1), q(0));
+        return of.angle_ >= 0 ? tape.unwrapped(angle, of.angle_) : angle;
+    }
+
+    /// By each form, of what does not count turns.
+    std::vector<TapeNumber> gradient() const
+    {
+        if (of.coordinate_.kind == CoordinateKind::arc_sine)
+            return {tape.number(1) / root(square_of_cosine())};
+        const TapeNumber r2 = sigma() + q(3) * q(3);
+        if (of.coordinate_.kind == CoordinateKind::rotation_component) {
+            const TapeVector turn = turn_of_sine(sigma(), q(3));
+            const TapeNumber along = turn[1] * q(0);
+            return {turn[0] + along * q(0), along * q(1), along * q(2), -(q(0) / r2)};
+        }
+        const TapeNumber S = root(sigma()), by_s = q(3) / r2 * inverse(S);
+        return {by_s * q(0), by_s * q(1), by_s * q(2), -(S / r2)};
+    }
+};
+
+TapeNumber LoadCoordinate::value(LoadTape& tape) const { return OnTape{*this, tape}.value(); }
 
 TapeNumber LoadCoordinate::rate(LoadTape& tape) const
 {
-    const auto form = [&](std::size_t k) { return FormOnTape{coordinate_.forms[k], places_, n_ == 2, tape}; };
-    if (!coordinate_.is_angle()) return form(0).rate();
-    const TapeNumber c = form(0).value(), s = form(1).value();
-    return (c * form(1).rate() - s * form(0).rate()) / (c * c + s * s);
+    const OnTape on{*this, tape};
+    if (!coordinate_.is_angle()) return on.form(0).rate();
+    if (coordinate_.counts_turns()) {
+        const TapeNumber c = on.q(0), s = on.q(1);
+        return (c * on.form(1).rate() - s * on.form(0).rate()) / (c * c + s * s);
+    }
+    const std::vector<TapeNumber> by = on.gradient();
+    TapeNumber sum = by[0] * on.form(0).rate();
+    for (std::size_t k = 1; k < by.size(); ++k) sum = sum + by[k] * on.form(k).rate();
+    return sum;
 }
 
-/// Of an angle dq = (c ds - s dc) / (c^2 + s^2).
+/// dq = sum_k dq/dq_k dq_k; of an angle (c ds - s dc) / (c^2 + s^2).
 void LoadCoordinate::pull(LoadTape& tape, TapeNumber Q) const
 {
-    const auto form = [&](std::size_t k) { return FormOnTape{coordinate_.forms[k], places_, n_ == 2, tape}; };
-    if (!coordinate_.is_angle()) return form(0).pull(Q);
-    const TapeNumber c = form(0).value(), s = form(1).value();
-    const TapeNumber by_r2 = Q.place < 0 ? inverse(c * c + s * s) : Q / (c * c + s * s);
-    form(1).pull(c * by_r2);
-    form(0).pull(-(s * by_r2));
+    const OnTape on{*this, tape};
+    if (!coordinate_.is_angle()) return on.form(0).pull(Q);
+    if (coordinate_.counts_turns()) {
+        const TapeNumber c = on.q(0), s = on.q(1);
+        const TapeNumber by_r2 = Q.place < 0 ? inverse(c * c + s * s) : Q / (c * c + s * s);
+        on.form(1).pull(c * by_r2);
+        return on.form(0).pull(-(s * by_r2));
+    }
+    const std::vector<TapeNumber> by = on.gradient();
+    for (std::size_t k = by.size(); k-- > 0;) on.form(k).pull(Q.place < 0 ? by[k] : Q * by[k]);
 }
 
 }   // namespace livens

@@ -15,6 +15,8 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
+struct Joint;
+
 /// What a law looks at: a displacement, or an angle, and its rate.
 struct LawCoordinate {
     JointCoordinate coordinate;
@@ -134,6 +136,12 @@ struct Bushing {
 /// InputError (`bushing-matrix`) for matrices that are not symmetric or negative.
 Load bushing(const std::string& name, int first, const BodyFrame& frame_first, int second,
              const BodyFrame& frame_second, const Bushing& law, const Configurations& X);
+
+/// A spring and a damper against all turns of a ball joint: a torque -stiffness times the rotation vector
+/// from its first triad to its second, about whatever axis, and -damping times the relative angular velocity.
+/// Up to 175 degrees. Throws InputError (`load-negative`).
+Load ball_spring(const std::string& name, const Joint& joint, double stiffness, double damping,
+                 const Configurations& X);
 
 /// A damper between two bodies by their relative angular velocity: a torque -damping (w2 - w1) on the second,
 /// and the opposite one on the first, however far they turn. Throws InputError (`load-negative`).

@@ -82,7 +82,8 @@ Load pressure(const std::string& name, int body, const SurfaceMoments& surface, 
     set_load_value(load, gradient);
     load.readings = {
         {"pressure", "Pa", [value](const LoadArguments& arguments) { return value(arguments.at).value; }}};
-    load.depends_on_X = load.needs_directors[0] = true;
+    load.depends_on_X = true;
+    load.needs_directors[0] = true;
     const Pressure of{surface, value, gradient};
     load.forces = [of](const LoadArguments& arguments, LoadForces& F) {
         F[0] = -1. * (directors(arguments.X[0]) * of.integral(arguments));

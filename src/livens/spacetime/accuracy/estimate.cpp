@@ -20,6 +20,7 @@
 #include "livens/spacetime/accuracy/reference_solution.h"
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/phases.h"
+#include "livens/spacetime/rotating.h"
 #include "livens/spacetime/solve_mesh.h"
 #include "livens/statics/frequencies.h"
 
@@ -333,6 +334,13 @@ void estimate_all(const Model& model, const Problem& problem, const Method& meth
 void estimate(const Model& model, const Problem& stated, const Method& method, const SolveOptions& options,
               Solution& solution)
 {
+    if (solution.with_rotors != nullptr) {
+        const WithRotors rotors(model);
+        const std::shared_ptr<Solution> whole = solution.with_rotors;
+        estimate(rotors.model(), with_rotors(rotors, stated), method, options, *whole);
+        solution = without_rotors(rotors, whole);
+        return;
+    }
     const Problem problem = with_prepared(stated);
     SolveReport& report = solution.report;
     if (!report.converged()) return;

@@ -85,6 +85,8 @@ void judge_beside(const Model& model, const Problem& problem, const SolveOptions
     if (!limit.empty() && is_solved)   // first, as the others may follow from it
         solution.verdict.reasons.insert(solution.verdict.reasons.begin(), limit);
     if (!limit.empty() && !is_solved) solution.report.message += "; " + limit;
+    if (std::string angle = angle_without_value(model, solution.motion); !angle.empty() && is_solved)
+        solution.verdict.reasons.push_back(std::move(angle));
     blame_turning_springs(model, solution);
     advise_radau(model, solution);
 }
@@ -95,7 +97,7 @@ void judge(const Model& model, const Problem& problem, const SolveOptions& optio
            const std::function<bool()>& goes_on)
 {
     // Most motions are judged by then; of the others the writing alone takes as long as anybody waits.
-    constexpr std::size_t large = 2'000'000;   // numbers
+    constexpr std::size_t large = 2'000'000;                                  // numbers
     const double grace = solution.motion.X.values.size() > large ? 0 : 0.5;   // s of CPU time
     SolveReport& report = solution.report;
     const auto give_up = [&](SolveStatus status, const std::string& why) {

@@ -108,8 +108,38 @@ std::string of_singular_end(double t)
            "determined there; try: moving that instant slightly";
 }
 
+namespace {
+
+/// Where a function of a row ends and the motion is about to leave it; empty: nowhere.
+std::string edge_ahead(const Model& model, const State& at)
+{
+    constexpr double near = 1e-3;   // of what the margin is measured by
+    std::vector<Matrix34> X = at.X;
+    const double step = 1e-6 * model.length();
+    double speed = 0;
+    for (const Matrix34& v : at.V) speed = std::max(speed, norm(v));
+    // Looked at from a little before: behind its end a span would grow again.
+    for (std::size_t b = 0; b < X.size() && speed > 0; ++b) X[b] -= step / speed * at.V[b];
+    for (int r = 0; r < model.n_rows(); ++r) {
+        const ConstraintRow& row = model.row(r);
+        std::size_t first = 0;
+        for (std::size_t m = 0; m < row.edges.size(); first += row.functions[m].n, ++m) {
+            const FunctionEdge& edge = row.edges[m];
+            const double here = edge.margin(function_point(row, row.functions[m], first, at.X));
+            const double before = edge.margin(function_point(row, row.functions[m], first, X));
+            if (here <= near * edge.size && here < before) return edge.what;
+        }
+    }
+    return "";
+}
+
+}   // namespace
+
 std::string of_locking(const Model& model, const State& first, const State& last)
 {
+    if (const std::string edge = edge_ahead(model, last); !edge.empty())
+        return edge + " near t = " + to_text(last.t, 6) +
+               " s; try: an earlier end, or lengths, loads or starts that keep away from there";
     const Lock lock = joints_that_lock(model, first, last);
     if (lock.empty()) return {};
     std::vector<std::string> driven, held;

@@ -46,7 +46,7 @@ Coordinates::Coordinates(const ModelTables& the_tables) : tables(the_tables), ro
         for (int side = 0; side < row.n_sides; ++side)
             for (const int column : row.columns[side])
                 for (int c = column; c < column + 3; ++c) {
-                    bool is_used = row.B[side].a[c] != 0;
+                    bool is_used = !row.is_quadratic || row.B[side].a[c] != 0;
                     for (const auto& entry : row.form)
                         is_used = is_used || (entry.to_side == side && entry.to == column);
                     if (is_used && c < n_numbers(row.bodies[side]))

@@ -8,13 +8,20 @@ namespace livens::mixed {
 
 LoadSums::LoadSums(const FieldSpace& space) : space_(space)
 {
-    const std::vector<Load>& loads = space.coordinates.tables.model->loads();
+    const Coordinates& m = space.coordinates;
+    const std::vector<Load>& loads = m.tables.model->loads();
     for (int l = 0; l < static_cast<int>(loads.size()); ++l) {
         if (!loads[l].depends_on_X && !loads[l].depends_on_V) continue;
-        for (int by = 0; by < 2; ++by)
+        for (int by = 0; by < static_cast<int>(loads[l].n_acted); ++by)
             for (int of = 0; of < static_cast<int>(loads[l].bodies.size()); ++of)
                 if (loads[l].bodies[by] != world && loads[l].bodies[of] != world)
-                    blocks_.push_back({l, by, of, {}, {}});
+                    blocks_.push_back({l, -1, by, of, loads[l].bodies[by], loads[l].bodies[of], {}, {}});
+    }
+    for (int k = 0; k < m.n_rows(); ++k) {
+        const RowTable& row = m.tables.rows[m.rows[k]];
+        for (const int by : row.bodies)
+            for (const int of : row.bodies)
+                if (!row.is_quadratic) blocks_.push_back({-1, k, 0, 0, by, of, {}, {}});
     }
 }
 
@@ -26,35 +33,47 @@ void LoadSums::clear()
 
 void LoadSums::add(const FieldSample& sample, int e, int g)
 {
-    const BlockFunctions& functions = space_.functions;
-    const ModelTables& tables = space_.coordinates.tables;
-    const double *M = functions.M(e, g), *D = functions.D(e, g);
+    const Coordinates& m = space_.coordinates;
+    const ModelTables& tables = m.tables;
     LoadTangent tangent;
     int of_load = -1;
     for (std::size_t l = 0; l < blocks_.size(); ++l) {
         Block& block = blocks_[l];
+        if (block.row >= 0) {   // of -lambda G
+            const Matrix<12, 12> H =
+                constraint_hessian(*tables.rows[m.rows[block.row]].row, {}, Configurations(sample.X.data()),
+                                   block.body_by, block.body_of);
+            add_products(block, l, -sample.lambda[block.row] * H, {}, e, g);
+            continue;
+        }
         const Load& load = tables.model->loads()[block.load];
         if (block.load != of_load) {
-            tangent = LoadTangent(load.bodies.size());
-            load.tangent(tables.loads.arguments(block.load, {functions.time(e, g), Side::middle},
+            tangent = LoadTangent(load.bodies.size(), load.n_acted);
+            load.tangent(tables.loads.arguments(block.load, {space_.functions.time(e, g), Side::middle},
                                                 sample.X.data(), sample.V.data()),
                          tangent);
             of_load = block.load;
         }
-        const Matrix<12, 12>& by_X = tangent.X[block.by][block.of];
-        const Matrix<12, 12>& by_V = tangent.V[block.by][block.of];
-        const int n = functions.n_local();
-        for (int i = 0; i < 144; ++i) {
-            if (by_X.a[i] == 0 && by_V.a[i] == 0) continue;
-            block.seen.set(static_cast<std::size_t>(i));
-            for (int a = 0; a < n; ++a)
-                for (int b = 0; b < n; ++b) {
-                    const double value = functions.weight(e, g) * M[a];
-                    const std::size_t pair = static_cast<std::size_t>(a) * n + b;
-                    sums_[(pair * blocks_.size() + l) * 144 + i] +=
-                        value * (M[b] * by_X.a[i] + D[b] * by_V.a[i]);
-                }
-        }
+        add_products(block, l, tangent.X[block.by][block.of], tangent.V[block.by][block.of], e, g);
+    }
+}
+
+/// The entries of block l, times all products of functions.
+void LoadSums::add_products(Block& block, std::size_t l, const Matrix<12, 12>& by_X,
+                            const Matrix<12, 12>& by_V, int e, int g)
+{
+    const BlockFunctions& functions = space_.functions;
+    const double *M = functions.M(e, g), *D = functions.D(e, g);
+    const int n = functions.n_local();
+    for (int i = 0; i < 144; ++i) {
+        if (by_X.a[i] == 0 && by_V.a[i] == 0) continue;
+        block.seen.set(static_cast<std::size_t>(i));
+        for (int a = 0; a < n; ++a)
+            for (int b = 0; b < n; ++b) {
+                const double value = functions.weight(e, g) * M[a];
+                const std::size_t pair = static_cast<std::size_t>(a) * n + b;
+                sums_[(pair * blocks_.size() + l) * 144 + i] += value * (M[b] * by_X.a[i] + D[b] * by_V.a[i]);
+            }
     }
 }
 

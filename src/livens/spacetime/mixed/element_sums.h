@@ -9,14 +9,17 @@
 
 namespace livens::mixed {
 
-/// Integrals of the loads' tangents, 12 x 12 for each pair of bodies of a load.
+/// Integrals of the loads' tangents, 12 x 12 for each pair of bodies of a load; and of the reactions of rows
+/// that are no quadratic forms, whose Hessians are not constant.
 ///
 /// Which of these entries are ever other than zero no load tells beforehand: they are remembered as they
 /// come.
 class LoadSums {
 public:
     struct Block {
-        int load, by, of;   ///< derivative of the force on body `by` by X of body `of` (0 or 1 of the load)
+        int load, row;   ///< one of them; -1: it is of the other kind
+        int by, of;      ///< derivative of the force on body `by` by X of body `of`: places in Load::bodies
+        int body_by, body_of;
         std::bitset<144> entries, seen;
     };
     explicit LoadSums(const FieldSpace& space);
@@ -33,6 +36,9 @@ public:
     }
 
 private:
+    void add_products(Block& block, std::size_t l, const Matrix<12, 12>& by_X, const Matrix<12, 12>& by_V,
+                      int e, int g);
+
     const FieldSpace& space_;
     std::vector<Block> blocks_;
     std::vector<double> sums_;

@@ -130,8 +130,7 @@ void Tangent::add_forces(int e)
                 entries_.add(row + entry.coordinate_i, X + entry.coordinate_j, K[entry.row] * entry.value);
             for (std::size_t l = 0; l < sums_.loads.blocks().size(); ++l) {
                 const LoadSums::Block& block = sums_.loads.blocks()[l];
-                const Load& load = m.tables.model->loads()[block.load];
-                const int by = m.first[load.bodies[block.by]], of = m.first[load.bodies[block.of]];
+                const int by = m.first[block.body_by], of = m.first[block.body_of];
                 const double* sums = sums_.loads.of(pair, l);
                 for (int i = 0; i < 144; ++i)
                     if (block.entries[static_cast<std::size_t>(i)])

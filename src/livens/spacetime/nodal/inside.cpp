@@ -55,10 +55,10 @@ void InsideLaws::add_forces(const InspectedLaw& law, const std::vector<double>& 
     tables_.bodies.rates_of(end.X.data(), end.velocity.data(), V_.data());
     const LoadArguments at = tables_.loads.arguments(law.load, {end.t}, end.X.data(), V_.data(), end.angles);
     for (std::size_t k = 0; k < law.inside.n_factors; ++k) {
-        LoadForces F{};
+        LoadForces F(load.n_acted);
         law.inside.unit(at, k, F);
         for (std::size_t n = 0; n < MissedMoments::n_moments; ++n)
-            for (std::size_t b = 0; b < 2; ++b)
+            for (std::size_t b = 0; b < load.n_acted; ++b)
                 for (int i = 0; i < 12 && load.bodies[b] != world; ++i)
                     forces_[n][12 * load.bodies[b] + i] += moments[n * law.inside.n_factors + k] * F[b].a[i];
     }

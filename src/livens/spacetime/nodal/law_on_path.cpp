@@ -19,10 +19,10 @@ namespace {
 /// bodies and its angles.
 LawInside whole(const Load& load)
 {
-    const std::size_t n = load.bodies.size();
+    const std::size_t n = load.bodies.size(), n_acted = load.n_acted;
     LawInside law;
     law.n_numbers = 24 * n + load.angles.size();
-    law.n_factors = 24;
+    law.n_factors = 12 * n_acted;
     law.numbers = [n](const LoadArguments& at, std::span<double> numbers) {
         for (std::size_t b = 0; b < n; ++b) {
             std::copy_n(at.X[b].a, 12, numbers.begin() + static_cast<std::ptrdiff_t>(24 * b));
@@ -30,8 +30,8 @@ LawInside whole(const Load& load)
         }
         std::ranges::copy(at.angles, numbers.begin() + static_cast<std::ptrdiff_t>(24 * n));
     };
-    law.factors = [n, forces = load.forces](Instant t, std::span<const double> numbers,
-                                            std::span<double> factors) {
+    law.factors = [n, n_acted, forces = load.forces](Instant t, std::span<const double> numbers,
+                                                     std::span<double> factors) {
         LoadArguments at(n);
         at.at = t;
         for (std::size_t b = 0; b < n; ++b) {
@@ -39,9 +39,9 @@ LawInside whole(const Load& load)
             std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(24 * b + 12), 12, at.V[b].a);
         }
         at.angles = numbers.subspan(24 * n);
-        LoadForces F{};
+        LoadForces F(n_acted);
         forces(at, F);
-        for (std::size_t b = 0; b < 2; ++b)
+        for (std::size_t b = 0; b < n_acted; ++b)
             std::copy_n(F[b].a, 12, factors.begin() + static_cast<std::ptrdiff_t>(12 * b));
     };
     law.unit = [](const LoadArguments&, std::size_t k, LoadForces& F) { F[k / 12].a[k % 12] += 1; };
@@ -60,10 +60,10 @@ void weigh(const ModelTables& tables, InspectedLaw& law)
     const LoadArguments at = tables.loads.arguments(law.load, {start.t}, X.data(), V.data(), {});
     const Load& load = tables.model->loads()[law.load];
     for (std::size_t k = 0; k < law.inside.n_factors; ++k) {
-        LoadForces F{};
+        LoadForces F(load.n_acted);
         law.inside.unit(at, k, F);
         std::vector<double> raw(X.size(), 0.0);
-        for (std::size_t b = 0; b < 2; ++b)
+        for (std::size_t b = 0; b < load.n_acted; ++b)
             if (load.bodies[b] != world)
                 std::copy_n(F[b].a, 12, raw.begin() + static_cast<std::ptrdiff_t>(12 * load.bodies[b]));
         tables.bodies.twist_rows(X.data(), maps.data(), raw.data(), q.data());

@@ -110,7 +110,7 @@ void Tangent::evaluate_loads(const WindowLayout& layout, const Nodes& nodes, con
             const LoadArguments arguments =
                 tables_.loads.arguments(tables_.loads.with_tangent[l], at, X_.data(), V_.data(), angles);
             LoadTangent& tangent = load_tangents_[c * n + l];
-            tangent = LoadTangent(load.bodies.size());
+            tangent = LoadTangent(load.bodies.size(), load.n_acted);
             load.tangent(arguments, tangent);
             const double size = std::abs(layout.h(e)) * load_terms(tables_, load, arguments, tangent);
             load_roundings_[e] = std::max(load_roundings_[e], size);
@@ -127,7 +127,7 @@ void Tangent::add_loads(const WindowLayout& layout, const Nodes& nodes, int e, i
     double block[36], scaled[36];
     for (std::size_t l = 0; l < n; ++l) {
         const Load& load = tables_.model->loads()[tables_.loads.with_tangent[l]];
-        for (std::size_t r = 0; r < 2; ++r) {
+        for (std::size_t r = 0; r < load.n_acted; ++r) {
             for (std::size_t s = 0; s < load.bodies.size(); ++s) {
                 const int i = load.bodies[r], j = load.bodies[s];
                 if (i == world || j == world) continue;

@@ -57,7 +57,7 @@ std::vector<double> WatchedLaw::angles_at(ElementPath& path, double share, std::
 LoadForces WatchedLaw::forces(ElementPath& path, const LawState& at) const
 {
     path.go(at.share, bodies_);
-    LoadForces F{};
+    LoadForces F(tables_.model->loads()[load_].n_acted);
     tables_.model->loads()[load_].forces(
         tables_.loads.arguments(load_, path.at(), path.X(), path.V(), at.angles), F);
     return F;
@@ -69,7 +69,7 @@ bool WatchedLaw::jumps(ElementPath& path, const LawState& before, const LawState
     constexpr double jump = 1e-6;   // of the force where the look ends: at a bend it may be none
     if (load_ < 0) return false;
     const LoadForces a = forces(path, before), b = forces(path, after), c = forces(path, end);
-    for (std::size_t side = 0; side < 2; ++side)
+    for (std::size_t side = 0; side < a.size(); ++side)
         if (norm(b[side] - a[side]) > jump * std::max({norm(a[side]), norm(b[side]), norm(c[side])}))
             return true;
     return false;

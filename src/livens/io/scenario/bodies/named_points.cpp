@@ -136,6 +136,14 @@ void tell_frames(Builder& builder, Section& section)
     }
 }
 
+void tell_rope(Builder& builder, Section& section)
+{
+    for (Section& at : section.sections("over")) {
+        tell_point(builder, at);
+        if (!at.is_valid()) section.spoil();
+    }
+}
+
 /// `at`: where the point is when bodies are as they are stated.
 void tell_place(Builder& builder, Section& section)
 {
@@ -196,6 +204,7 @@ void tell_points(Builder& builder)
             tell_two(builder, section);
             if (section.takes("point")) tell_point(builder, section);
             tell_frames(builder, section);
+            tell_rope(builder, section);
             tell_place(builder, section);
         }
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// [[drive]]: one table of kinds, and of laws over time.
-// A drive is a joint whose row follows a function of time (theory.md, Drives; docs/joints.md, Drives). Laws
-// need two continuous derivatives, since a jump of the velocity would take an infinite force.
+// [[drive]]: one table of kinds, and of laws over time, which need two continuous derivatives: a jump of the
+// velocity would take an infinite force (theory.md and docs/joints.md, Drives).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -207,7 +206,7 @@ std::array<TimeFunction, 3> read_path(const Section& drive, const Duration& duri
 void warn_of_turns(Builder& builder, const Section& drive, const std::string& name,
                    const NamedCoordinate& coordinate, const TimeFunction& law, const Duration& during)
 {
-    if (!coordinate.coordinate.is_angle() || during.begins > during.start) return;
+    if (!coordinate.coordinate.counts_turns() || during.begins > during.start) return;
     const double begins = law({during.start, Side::right}).value, gap = begins - coordinate.at_stated;
     // At exactly half a turn both ways are equally long, and rounding would decide.
     constexpr double half = std::numbers::pi * (1 - 1e-9);
@@ -229,6 +228,7 @@ Joint make_on_joint(Builder& builder, const Section& drive, const std::string& n
     const JointReference of = find_coordinate(builder, drive, "drive[" + name + "]");
     check_units(drive, of.coordinate->coordinate.is_angle(), "drive[" + name + "]");
     const TimeFunction law = read_law(drive, 0, 1, of.coordinate->at_stated, during);
+    check_quarter_turn(of, law, {during.begins, during.ends}, "drive[" + name + "]");
     warn_of_turns(builder, drive, name, *of.coordinate, law, during);
     return driven_coordinate(name, *of.joint, *of.coordinate, law, X);
 }

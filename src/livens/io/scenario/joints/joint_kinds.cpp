@@ -41,72 +41,6 @@ const Key angle_rate{"rate", types::number, "Initial rate of the angle; see also
 const Key displacement_rate{"rate", types::number,
                             "Initial rate of the displacement; see also `[[start.coordinates]]`.", "m/s"};
 
-/// Loads along a coordinate, which the joint brings itself: what read_joint_loads() makes of them.
-std::vector<Key> keys_along_angle()
-{
-    return {
-        Key{"damping", types::number, "Damping torque per rad/s of the rate.", "N m s/rad", "0"}.within(
-            not_negative),
-        Key{"stiffness", types::number, "Restoring torque per radian from `rest`.", "N m/rad", "0"}.within(
-            not_negative),
-        Key{"rest", types::number, "Unloaded angle of the stiffness.", "rad", "0"},
-        Key{"limits", types::interval,
-            "Smallest and largest angle; `-inf` or `inf` means no limit. Beyond a limit by d, a torque "
-            "limit_stiffness d (1 + limit_damping d') pushes back; it never pulls.",
-            "rad"}
-            .or_infinite(),
-        Key{"limit_stiffness", types::number,
-            "Stiffness of the limits. Default: such that a contact, half a period of the inertia on the "
-            "joint, lasts 0.03 T with T = sqrt(model length / gravity), or 0.3 s without gravity.",
-            "N m/rad"}
-            .within(positive),
-        Key{"limit_damping", types::number, "Damping of the limits. Default: T; 0 makes bounces lossless.",
-            "s/rad"}
-            .within(not_negative)};
-}
-std::vector<Key> keys_along_displacement()
-{
-    return {Key{"damping", types::number, "Damping force per m/s of the rate.", "N s/m", "0"}.within(
-                not_negative),
-            Key{"stiffness", types::number, "Restoring force per metre from `rest`.", "N/m", "0"}.within(
-                not_negative),
-            Key{"rest", types::number, "Unloaded displacement of the stiffness.", "m", "0"},
-            Key{"limits", types::interval,
-                "Smallest and largest displacement; `-inf` or `inf` means no limit. Beyond a limit by d, a "
-                "force limit_stiffness d (1 + limit_damping d') pushes back; it never pulls.",
-                "m"}
-                .or_infinite(),
-            Key{"limit_stiffness", types::number,
-                "Stiffness of the limits. Default: such that a contact, half a period of the mass on the "
-                "joint, lasts 0.03 T with T = sqrt(model length / gravity), or 0.3 s without gravity.",
-                "N/m"}
-                .within(positive),
-            Key{"limit_damping", types::number,
-                "Damping of the limits. Default: T / model length; 0 makes bounces lossless.", "s/m"}
-                .within(not_negative)};
-}
-
-std::vector<Key> and_along_angle(std::vector<Key> keys)
-{
-    for (Key& key : keys_along_angle()) keys.push_back(std::move(key));
-    return keys;
-}
-std::vector<Key> and_along_displacement(std::vector<Key> keys)
-{
-    for (Key& key : keys_along_displacement()) keys.push_back(std::move(key));
-    return keys;
-}
-/// Of a joint with two coordinates, a table for each.
-std::vector<Key> and_along_both(std::vector<Key> keys)
-{
-    keys.push_back(Key{"angle", types::table, "Damping, spring and limits along the angle."}.holding(
-        {"angle of a joint", "Loads along the angle.", keys_along_angle()}));
-    keys.push_back(
-        Key{"displacement", types::table, "Damping, spring and limits along the displacement."}.holding(
-            {"displacement of a joint", "Loads along the displacement.", keys_along_displacement()}));
-    return keys;
-}
-
 Key frames_of_joint()
 {
     return frames_key(
@@ -117,6 +51,27 @@ Key frames_of_joint()
         "the joint axis. The first axis counts where a joint prevents the turn about the third: weld, "
         "prismatic, constant_velocity, and screw at zero displacement align the first axes of both frames; "
         "other types ignore them.");
+}
+
+const Key angles{
+    "angles",
+    types::choice,
+    "Axes of three angles of the rotation, which become the coordinates angle_1, angle_2, angle_3: "
+    "first about an axis on the first body, last about one on the second. The second angle stays "
+    "within 90 degrees, near which the others are not unique. Default: no angles.",
+    "",
+    "",
+    false,
+    {"xyz", "xzy", "yxz", "yzx", "zxy", "zyx"}};
+
+Key frames_of_ball()
+{
+    return frames_key(
+        "frame of a joint",
+        "Two frames, one on each body and in that body's coordinates, that meet in one point: "
+        "`at` and `points` are left out. The rotation of the joint is that from the first frame "
+        "to the second, and angles are zero where both coincide. Default: axes of the first "
+        "body, which those of the second are parallel to where `[[body]]` places the bodies.");
 }
 
 /// A kind of the library with a maker that takes a frame.
@@ -138,12 +93,35 @@ Joint make_screw(const JointParts& p)
     return screw(p.name, p.first, p.second, p.frame, p.X_first, p.X_second, p.section.number("pitch"),
                  p.scale);
 }
+Matrix3 triad_of(const Vector3& third, const Vector3& first)
+{
+    const Vector3 second = cross(third, first);
+    return {first[0], first[1], first[2], second[0], second[1], second[2], third[0], third[1], third[2]};
+}
+
 Joint make_constant_angle(const JointParts& p)
 {
     // What is not stated is as the bodies stand, so that the joint is closed at the start.
     const double value = p.section.has("angle") ? p.section.number("angle") : p.angle();
     return constant_angle(p.name, p.first, p.second, p.frame, value, p.scale);
 }
+Joint make_spherical(const JointParts& p)
+{
+    const std::string about = p.section.text("angles");
+    if (p.has_point_mass && !about.empty())
+        throw InputError({"joint-angles", "joint[" + p.name + "].angles",
+                          "a point mass has no axes, and a ball joint on it no angles", "", "", "",
+                          "leave 'angles' out, or give the body a shape or an inertia"});
+    if (p.has_point_mass) return spherical(p.name, p.first, p.second, p.frame, p.scale);
+    TriadPair triads;
+    if (p.section.has("frames"))
+        triads = {triad_of(p.frame.axis_first, p.frame.across_first),
+                  triad_of(p.frame.axis_second, p.frame.across_second)};
+    else
+        triads.second = transpose(directors(p.X_second)) * directors(p.X_first);
+    return spherical(p.name, p.first, p.second, p.frame, {triads, about}, p.X_first, p.X_second, p.scale);
+}
+
 Joint make_rod(const JointParts& p)
 {
     const double length = p.section.has("length") ? p.section.number("length") : p.distance();
@@ -202,7 +180,8 @@ std::vector<JointKind> kinds_of_points_and_axes()
     return {
         {{"universal",
           "Cardan joint: rotation about two perpendicular axes (4 constraints)",
-          {at, points, axes, frames}},
+          {at, points, axes, frames, table_along_angle("angle_1", "the angle about the first body's axis"),
+           table_along_angle("angle_2", "the angle about the second body's axis")}},
          Location::on_two_axes,
          by_frame<universal>},
         {{"constant_velocity",
@@ -210,14 +189,10 @@ std::vector<JointKind> kinds_of_points_and_axes()
           {at, points, axes, frames}},
          Location::on_two_axes,
          as_it_stands<constant_velocity>},
-        {{"spherical",
-          "ball joint: one common point (3 constraints)",
-          {at, points,
-           Key{"damping", types::number, "Damping torque per rad/s of relative angular velocity.",
-               "N m s/rad", "0"}
-               .within(not_negative)}},
+        {{"spherical", "ball joint: one common point (3 constraints)",
+          and_against_turns({at, points, frames_of_ball(), angles})},
          Location::at_point,
-         by_frame<spherical>},
+         make_spherical},
         {{"point_on_line", "a point of the second body stays on a line of the first (2 constraints)",
           and_along_displacement({at, line, points, frames, displacement, displacement_rate})},
          Location::on_line,
@@ -263,10 +238,13 @@ std::vector<JointKind> kinds_of_curves_and_distances()
          Location::on_curve,
          make_slot},
         {{"rod",
-          "constant distance between two points (1 constraint)",
-          {points,
+          "constant distance between two points, or a rope over several points: the sum of its spans is "
+          "constant "
+          "(1 constraint)",
+          {points, over_key(),
            Key{"length", types::number,
-               "Length of the rod. Default: the distance of its points where `[[body]]` places the bodies.",
+               "Length of the rod: the distance of its points, or of a rope the sum of its spans. Default: "
+               "what it is where `[[body]]` places the bodies.",
                "m"}
                .within(positive)}},
          Location::at_points,
@@ -300,15 +278,16 @@ std::vector<JointKind> kinds_of_coordinates()
                                     p.section.number("radius"), p.X, p.scale);
          }},
         {{"coupling",
-          "a weighted sum of coordinates of any joints is constant (1 constraint)",
-          {Key{
-              "terms", types::factors,
-              "The factor of each coordinate in the sum, under its name in quotes, as in `{ \"left.angle\" = "
-              "1, \"slide.displacement\" = \"-2 1/m\" }`. Angles are in rad, displacements in m; where "
-              "factors have units, all terms must have one."}
-               .needed()}},
+          "a weighted sum of coordinates of any joints is constant, or a function of one more (1 constraint)",
+          {Key{"terms", types::factors,
+               "The factor of each coordinate in the sum, under its name in quotes, as in `{ \"left.angle\" "
+               "= "
+               "1, \"slide.displacement\" = \"-2 1/m\" }`. Angles are in rad, displacements in m; where "
+               "factors have units, all terms must have one."}
+               .needed(),
+           law_key()}},
          Location::of_joints,
-         [](const JointParts& p) { return coupling(p.name, p.coupled, p.X, p.scale); }}};
+         make_coupling}};
 }
 
 }   // namespace
@@ -323,6 +302,20 @@ const std::vector<JointKind>& joint_kinds()
         return kinds;
     }();
     return all;
+}
+
+Key over_key()
+{
+    return Key{
+        "over", types::tables,
+        "A rope instead of a line between two points: the points over which it runs freely, two or more, "
+        "in this order, on any bodies or the world. It replaces `between` and `points`."}
+        .holding(
+            {"point of a rope",
+             "A place that the rope ends at or runs over, without friction or size, as an eye or a small "
+             "pulley.",
+             {Key{"body", types::text, body_or_world_or_point}.needed_without("point"),
+              Key{"point", types::point, "Its place, in coordinates of that body.", "m", "[0, 0, 0]"}}});
 }
 
 Key frames_key(const std::string& heading, const std::string& doc)

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "livens/io/scenario/schema/section.h"
@@ -32,7 +33,9 @@ struct JointParts {
     JointFrame frame;
     const Matrix34 &X_first, &X_second;   ///< at the start
     double scale;
+    bool has_point_mass = false;
     std::vector<CoupledJoint> coupled = {};   ///< of a coupling: by `joints` two, else the terms
+    CoupledJoint leader = {};                 ///< of a coupling by a law; null: there is none
     std::vector<Matrix34> X = {};             ///< of all bodies, for a coupling
     /// From coordinates of the bodies as stated to their axes.
     Matrix3 stretch_first = identity<3>(), stretch_second = identity<3>();
@@ -54,5 +57,18 @@ struct JointKind : Kind {
 };
 
 const std::vector<JointKind>& joint_kinds();
+
+/// `law` of a coupling.
+Key law_key();
+/// By terms, and by a law where there is one.
+Joint make_coupling(const JointParts& p);
+// Keys of loads along the only coordinate, or in tables for each of two.
+std::vector<Key> and_along_angle(std::vector<Key> keys);
+std::vector<Key> and_along_displacement(std::vector<Key> keys);
+std::vector<Key> and_along_both(std::vector<Key> keys);
+/// A table for one of several angles.
+Key table_along_angle(std::string_view word, const std::string& of);
+/// Of a ball joint, against all turns together and along its angles.
+std::vector<Key> and_against_turns(std::vector<Key> keys);
 
 }   // namespace livens::inline io_internal

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // [[joint]]: where it sits, and what may be wrong with that.
 // Placed in the world (`at`), on the bodies (`points`) or by `frames`; see docs/joints.md.
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "livens/base/text.h"
 #include "livens/io/scenario/bodies/bodies.h"
@@ -187,6 +189,18 @@ Joint fitted(Builder& builder, const Section& joint, const std::function<Joint(c
     return std::move(fit.joint);
 }
 
+/// `rotor_inertia` of a joint with one coordinate, or of its table for each of two.
+void read_rotors(const Section& joint, Joint& made)
+{
+    const bool is_one = joint.takes("rotor_inertia");
+    for (NamedCoordinate& one : made.coordinates) {
+        const std::span<const Section> tables =
+            joint.takes(one.name) ? joint.sections(one.name) : std::span<const Section>{};
+        const Section* keys = is_one ? &joint : tables.empty() ? nullptr : &tables.front();
+        if (keys != nullptr && keys->has("rotor_inertia")) one.rotor_inertia = keys->number("rotor_inertia");
+    }
+}
+
 Joint make_joint(Builder& builder, const Section& joint, const std::string& name, int first, int second)
 {
     const Matrix34 &X_first = builder.start_configuration(first),
@@ -194,12 +208,14 @@ Joint make_joint(Builder& builder, const Section& joint, const std::string& name
     const JointFrame frame = read_frame(builder, joint, first, second);
     const auto make = [&](const JointFrame& at) {
         JointParts parts{joint, name, first, second, at, X_first, X_second, builder.length()};
+        parts.has_point_mass = builder.is_point(first) || builder.is_point(second);
         parts.stretch_first = builder.stretch(first);
         parts.stretch_second = builder.stretch(second);
         return joint_kinds()[static_cast<std::size_t>(joint.kind())].make(parts);
     };
     Joint made = is_fitted(builder.run()) ? fitted(builder, joint, make, frame) : make(frame);
     read_times(builder, joint, made);
+    read_rotors(joint, made);
     if (joint.has("coordinate")) made.coordinates.front().at_stated = joint.number("coordinate");
     return made;
 }
@@ -207,7 +223,8 @@ Joint make_joint(Builder& builder, const Section& joint, const std::string& name
 std::string claim_joint_name(const Section& joint, std::unordered_set<std::string>& taken)
 {
     const bool has_ends =
-        joint.find("between") != nullptr || joint.find("joints") != nullptr || joint.find("terms") != nullptr;
+        std::ranges::any_of(std::initializer_list<std::string_view>{"between", "joints", "terms", "over"},
+                            [&](std::string_view key) { return joint.find(key) != nullptr; });
     if (!joint.has("name") && (!has_ends || joint.kind() == any_kind)) return {};
     const std::string name = joint.has("name") ? joint.text("name") : default_name(joint);
     const Advice advice = joint.has("name") ? Advice{"results refer to joints by name", "rename one of them"}
@@ -245,11 +262,11 @@ Key coordinate_key()
 {
     return {"coordinate",
             types::choice,
-            "Which coordinate of the joint. Needed only if the joint has both.",
+            "Which coordinate of the joint. Needed only if the joint has several.",
             "",
             "",
             false,
-            {"angle", "displacement"}};
+            {"angle", "displacement", "angle_1", "angle_2", "angle_3"}};
 }
 
 JointReference find_coordinate(const Builder& builder, const Section& section, const std::string& path)
@@ -276,8 +293,10 @@ JointReference find_coordinate(const Builder& builder, const Section& section, c
              "joint '" + wanted + "' (" + joint->type + ") has no " +
                  (is_said ? section.text("coordinate") : "coordinate"),
              "", "", "",
-             "revolute, cylindrical, planar, screw and parallel_axes joints have an angle; prismatic, "
-             "cylindrical, screw and point_on_line joints a displacement"});
+             "revolute, cylindrical, planar, screw and parallel_axes joints have an angle; universal joints "
+             "angle_1 and angle_2, spherical ones with 'angles' angle_3 as well; prismatic, cylindrical, "
+             "screw "
+             "and point_on_line joints a displacement"});
     return {joint, of};
 }
 
@@ -289,8 +308,8 @@ Table joint_table()
         if (joint_kinds()[i].location == Location::of_joints)
             keys[0].required = true;   // `joints`, or `terms`
         else
-            keys.insert(keys.begin(),
-                        Key{"between", types::names, two_bodies_or_points}.needed_without("points"));
+            keys.insert(keys.begin(), Key{"between", types::names, two_bodies_or_points}.needed_without(
+                                          std::string_view(all[i].word) == "rod" ? "points over" : "points"));
     }
     return Table{
         "[[joint]]",
@@ -308,9 +327,7 @@ Table joint_table()
          Key{"until", types::number,
              "Time of release: velocities continue, the reaction ends. Default: never. lobatto and radau "
              "only.",
-             "s"},
-         Key{"rotor_inertia", types::later,
-             "a point on a line of the world and a rack_and_pinion have this effect: docs/howto/motors.md"}}}
+             "s"}}}
         .with_kinds("type", std::move(all));
 }
 
@@ -336,6 +353,10 @@ void read_joints(Builder& builder)
             builder.remember(path, section);
             if (is_coupling) {
                 if (findings.n_errors() == before) read_coupling(builder, section, name, path);
+                continue;
+            }
+            if (section.has("over")) {
+                if (findings.n_errors() == before) read_rope(builder, section, name, path);
                 continue;
             }
             BodyReference first, second;

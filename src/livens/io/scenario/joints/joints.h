@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "livens/io/scenario/builder.h"
 
@@ -23,8 +25,17 @@ struct JointReference {
     const Joint* joint;
     const NamedCoordinate* coordinate;
 };
+/// Of three angles of a ball joint the second is driven no farther than a quarter turn while it is (from,
+/// until). Throws InputError (`drive-angle`).
+void check_quarter_turn(const JointReference& of, const TimeFunction& law,
+                        const std::array<double, 2>& during, const std::string& path);
 /// Throws InputError (`joint-unknown`, `joint-coordinate`) at path.joint.
 JointReference find_coordinate(const Builder& builder, const Section& section, const std::string& path);
+
+/// `over`: the points of a rope.
+Key over_key();
+/// What `over` of a section says, in axes of the bodies; none where something is wrong, which is told.
+std::optional<std::vector<BodyPoint>> read_over(Builder& builder, const Section& section);
 
 /// `frames`: one for each of two bodies.
 Key frames_key(const std::string& heading, const std::string& doc);
@@ -36,6 +47,9 @@ void warn_of_world_points(Builder& builder, const Section& section, const std::a
 /// A joint between coordinates of others, which are in the model already.
 void read_coupling(Builder& builder, const Section& section, const std::string& name,
                    const std::string& path);
+
+/// A rod over several points.
+void read_rope(Builder& builder, const Section& section, const std::string& name, const std::string& path);
 
 // Each reports all it finds.
 void read_joints(Builder& builder);

@@ -86,11 +86,12 @@ bool check_spring(const Section& load)
 {
     if (const Value* points = load.find("points"); points != nullptr && points->numbers.empty())
         return false;   // names of no points, which was told
-    if (!load.at_most_one({"between", "joint"}, "spring-place")) return false;
-    if (!load.has("joint") && !load.has("between"))
+    if (!load.at_most_one({"between", "joint", "over"}, "spring-place")) return false;
+    if (!load.has("joint") && !load.has("between") && !load.has("over"))
         return load.error(
-            "", "spring-place", load.label() + " has neither 'between' nor 'joint'",
-            {"", "give 'between', the two bodies it connects, or 'joint', the joint it acts on"});
+            "", "spring-place", load.label() + " has neither 'between' nor 'joint' nor 'over'",
+            {"", "give 'between', the two bodies it connects, 'joint', the joint it acts on, or 'over', the "
+                 "points that it runs over"});
     // Both are evaluated, so that all findings of a spring come in one run.
     const bool is_placed = check_place(load), has_law = check_law(load);
     return is_placed && has_law;

@@ -88,6 +88,7 @@ std::vector<Key> keys_of_spring()
             "of points in `points`."},
         Key{"joint", types::text, "Joint along whose coordinate the spring acts; instead of `between`."},
         coordinate_key(),
+        over_key(),
         Key{"points", types::two_points,
             "Attachment point on each body, in that body's coordinates. Default: the reference points (for "
             "the world: its origin).",
@@ -109,7 +110,8 @@ std::vector<Key> keys_of_spring()
             .or_in("N m s/rad")
             .within(not_negative),
         Key{"free_length", types::number,
-            "Unloaded length, for a spring with `between`. Needed if it has a stiffness or a law.", "m"}
+            "Unloaded length, for a spring with `between` or `over`. Needed if it has a stiffness or a law.",
+            "m"}
             .within(not_negative),
         Key{"rest", types::number, "Unloaded value of the coordinate, for a spring with `joint`.", "m", "0"}
             .or_in("rad"),
@@ -259,7 +261,10 @@ const std::vector<LoadKind>& load_kinds()
          make_force,
          check_value},
         {{"torque", "acts on a body", keys_on_body("torque", "N m", {})}, make_torque, check_value},
-        {{"spring", "acts along the line between two points, or along a joint coordinate, with a damper",
+        {{"spring",
+          "acts along the line between two points, along a rope over several points, or along a joint "
+          "coordinate, "
+          "with a damper",
           keys_of_spring()},
          make_spring,
          check_spring},

@@ -26,6 +26,7 @@ struct LoadSources {
     std::string name;
     int first, second;
     Builder& builder;
+    std::vector<BodyPoint> over = {};   ///< of a rope
 
     std::string path() const { return "load[" + name + "]"; }
 };

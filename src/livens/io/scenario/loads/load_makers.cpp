@@ -311,6 +311,7 @@ Load make_spring(const LoadSources& p)
     check_units(s, false, p.path());
     const SpringDamper law{s.number("stiffness"), s.number("damping"), s.number("free_length"),
                            s.number("preload"), read_law(p)};
+    if (s.has("over")) return rope_spring(p.name, p.over, law, places(p.builder));
     return spring_damper(p.name, p.first, p.builder.in_axes(p.first, s.row("points", 0)), p.second,
                          p.builder.in_axes(p.second, s.row("points", 1)), law);
 }

@@ -66,9 +66,14 @@ void read_load(Builder& builder, const Section& load, const std::string& name, b
     if (kind.check != nullptr) is_good = kind.check(load) && is_good;
     if (load.takes("from")) is_good = check_interval(builder, load, builder.findings()) && is_good;
     BodyReference first, second;
-    if (!find_bodies(builder, load, first, second) || !is_good) return;
+    std::optional<std::vector<BodyPoint>> over(std::in_place);
+    if (load.has("over"))
+        over = is_good ? read_over(builder, load) : std::nullopt;
+    else if (!find_bodies(builder, load, first, second))
+        return;
+    if (!is_good || !over) return;
     builder.guard(path, [&] {
-        builder.model().add_load(kind.make({load, name, first.index, second.index, builder}));
+        builder.model().add_load(kind.make({load, name, first.index, second.index, builder, *over}));
         warn_of_world_points(builder, load, {first.index, second.index});
     });
 }
@@ -96,7 +101,7 @@ void check_start(Builder& builder)
     const State state = model.start();
     for (const Load& load : model.loads()) {
         const Instant at{time == nullptr ? 0 : time->number("start"), Side::right};
-        LoadForces F{};
+        LoadForces F(load.n_acted);
         // The right side of the instant: a load that begins at the start acts from there on.
         load.forces(load_arguments(load, at, state.X, state.V), F);
         double sum = 0;

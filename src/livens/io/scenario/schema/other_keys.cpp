@@ -157,9 +157,7 @@ constexpr OtherKey other_keys[] = {
      "limit range lower upper min max stop stops jointlimits lowerlimit upperlimit limited hardstop "
      "jointrange",
      "limits", "limits = [\"-90 deg\", \"90 deg\"], of the coordinate; beyond them acts a stiff spring"},
-    {"[[joint]]", "", "armature rotor reflectedinertia motorinertia gearedinertia", "",
-     "a point of this mass on a line of the world, bound to the joint by a \"rack_and_pinion\" of radius 1, "
-     "has this effect: docs/howto/motors.md"},
+    {"[[joint]]", "", "armature rotor reflectedinertia motorinertia gearedinertia", "rotor_inertia"},
     {"[[joint]]", "", "limitspring limitk stopstiffness contactstiffness", "limit_stiffness"},
     {"[[joint]]", "", "limitc stopdamping contactdamping dissipation", "limit_damping"},
     {"[[joint]]", "",

@@ -102,6 +102,9 @@ inline constexpr const char* two_bodies_or_points = "Names of two different bodi
 inline constexpr const char* body_or_point =
     "Name of the body. Not needed with the name of a point in `point`.";
 
+inline constexpr const char* body_or_world_or_point =
+    "Name of the body, or `\"world\"`. Not needed with the name of a point in `point`.";
+
 inline constexpr std::string_view formulas_for_value =
     "a formula is given as 'expression', instead of 'value'";
 
@@ -117,7 +120,7 @@ struct Key {
     std::string_view other_unit = {};   ///< SI; what texts may have instead, along angles
     std::shared_ptr<const Table> child = {};   ///< of a table, or tables
     std::string_view formulas = {};            ///< where formulas stand instead; empty: nowhere
-    std::string_view told_by = {};   ///< key of points or files that may say it as well; empty: none
+    std::string_view told_by = {};   ///< keys of points or files that may say it as well, with blanks between
     bool may_be_infinite = false;    ///< inf and -inf are numbers of it
     /// SI, where the numbers of a list differ: of a matrix row by row, whose diagonal may stand alone.
     Words units = {};

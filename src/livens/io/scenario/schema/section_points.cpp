@@ -6,13 +6,27 @@
 
 namespace livens::inline io_internal {
 
-bool is_told_otherwise(const Key& key, const Node& node)
+namespace {
+
+/// By names, or by tables that have some.
+bool is_told_by(const Node* given)
 {
-    const Node* given = key.told_by.empty() ? nullptr : node.find(key.told_by);
     if (given == nullptr) return false;
     const bool is_list = given->kind == Node::Kind::array && !given->items().empty();
     const Node::Kind kind = (is_list ? given->items().front() : *given).kind;
     return kind == Node::Kind::text || (is_list && kind == Node::Kind::table);
+}
+
+}   // namespace
+
+bool is_told_otherwise(const Key& key, const Node& node)
+{
+    for (std::string_view rest = key.told_by; !rest.empty();) {
+        const std::size_t end = std::min(rest.find(' '), rest.size());
+        if (is_told_by(node.find(rest.substr(0, end)))) return true;
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    return false;
 }
 
 std::span<Section> Section::sections(std::string_view key)

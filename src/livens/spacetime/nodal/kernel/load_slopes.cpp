@@ -57,10 +57,10 @@ void LoadSlopes::add(int l, const WindowLayout& layout)
         for (const ProductSlopes& one : load.products(arguments)) add_product(load, one, layout.h(0));
         return;
     }
-    LoadTangent slopes(load.bodies.size());
+    LoadTangent slopes(load.bodies.size(), load.n_acted);
     load.tangent(arguments, slopes);
     terms_ = std::max(terms_, std::abs(layout.h(0)) * load_terms(tables_, load, arguments, slopes));
-    for (std::size_t r = 0; r < 2; ++r)
+    for (std::size_t r = 0; r < load.n_acted; ++r)
         for (std::size_t s = 0; s < load.bodies.size(); ++s) {
             const int i = load.bodies[r], j = load.bodies[s];
             if (i == world || j == world) continue;
