@@ -58,6 +58,7 @@ TreePlan::TreePlan(const ModelTables& tables, const RowPattern& pattern)
     std::vector<JointRows> joints;
     collect(tables, pattern, joints);
     grow(tables.n_bodies(), joints);
+    insert_loops(tables);
     couple(tables, pattern);
 }
 
@@ -107,15 +108,48 @@ void TreePlan::grow(int n_bodies, std::vector<JointRows>& joints)
         if (!is_used[j]) closing.push_back(std::move(joints[j]));
 }
 
-/// What elimination fills in.
+/// The bodies whose freedoms tell the rows of a loop apart: those between its ends, but not the one where it
+/// closes, with which they move alike; of a coupling all down to the root. The point of a rotor, which is in
+/// no other joint, does so alone.
+std::vector<int> TreePlan::inside(const JointRows& loop, const ModelTables& tables) const
+{
+    std::vector<int> passed(parent.size(), 0), bodies;
+    for (const int end : loop.bodies) {
+        if (is_point_of_rotors(tables, end)) return {end};
+        for (int b = end; b != world; b = parent[static_cast<std::size_t>(b)])
+            ++passed[static_cast<std::size_t>(b)];
+    }
+    const int all = loop.bodies.size() == 2 ? 2 : 0;   // ways that go on together where it closes
+    for (int b = 0; b < static_cast<int>(passed.size()); ++b)
+        if (passed[static_cast<std::size_t>(b)] > 0 && passed[static_cast<std::size_t>(b)] != all)
+            bodies.push_back(b);
+    return bodies;
+}
+
+/// Rotors first, and each loop as soon as all that is inside of it is gone: so it couples no more than that.
+void TreePlan::insert_loops(const ModelTables& tables)
+{
+    std::ranges::stable_partition(order, [&](int b) { return is_point_of_rotors(tables, b); });
+    const int n = tables.n_bodies();
+    parent.resize(parent.size() + closing.size(), world);
+    for (int k = 0; k < static_cast<int>(closing.size()); ++k) {
+        auto behind = order.begin();
+        for (const int b : inside(closing[static_cast<std::size_t>(k)], tables))
+            behind = std::max(behind, std::ranges::find(order, b) + 1);
+        while (behind != order.end() && *behind >= n) ++behind;
+        order.insert(behind, n + k);
+    }
+}
+
+/// What elimination fills in. The axes of a rotor's point know nothing of each other.
 void TreePlan::couple(const ModelTables& tables, const RowPattern& pattern)
 {
     const int n = tables.n_bodies();
-    std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(n));
+    std::vector<std::vector<int>> neighbours(parent.size());
     const auto pair_up = [&](int a, int b) {
         if (a == b || a == world || b == world) return;
-        if (a < n) add_once(neighbours[static_cast<std::size_t>(a)], b);
-        if (b < n) add_once(neighbours[static_cast<std::size_t>(b)], a);
+        add_once(neighbours[static_cast<std::size_t>(a)], b);
+        add_once(neighbours[static_cast<std::size_t>(b)], a);
     };
     for (const int l : tables.loads.with_tangent)
         for (const int a : tables.model->loads()[l].bodies)
@@ -125,18 +159,25 @@ void TreePlan::couple(const ModelTables& tables, const RowPattern& pattern)
             for_each_slope(*tables.rows[pattern.rows()[static_cast<std::size_t>(place)]].row, pair_up);
         for (const int b : closing[j].bodies) pair_up(b, n + static_cast<int>(j));
     }
-    coupled.assign(static_cast<std::size_t>(n), {});
-    std::vector<char> is_gone(static_cast<std::size_t>(n), 0);
+    coupled.assign(parent.size(), {});
+    std::vector<char> is_gone(parent.size(), 0);
     for (const int b : order) {
         std::vector<int>& later = coupled[static_cast<std::size_t>(b)];
         const int above = parent[static_cast<std::size_t>(b)];
         if (above != world) later.push_back(above);
         for (const int other : neighbours[static_cast<std::size_t>(b)])
-            if (other >= n || !is_gone[static_cast<std::size_t>(other)]) add_once(later, other);
+            if (!is_gone[static_cast<std::size_t>(other)]) add_once(later, other);
         is_gone[static_cast<std::size_t>(b)] = 1;
+        if (is_point_of_rotors(tables, b)) continue;
         for (const int one : later)
             for (const int other : later) pair_up(one, other);
     }
+}
+
+bool spacetime_internal::is_point_of_rotors(const ModelTables& tables, int unknown)
+{
+    return unknown != world && unknown < tables.n_bodies() &&
+           tables.model->bodies()[static_cast<std::size_t>(unknown)].is_rotor;
 }
 
 }   // namespace livens

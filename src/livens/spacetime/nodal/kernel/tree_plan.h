@@ -22,17 +22,22 @@ struct JointRows {
 struct TreePlan {
     TreePlan(const ModelTables& tables, const RowPattern& pattern);
 
-    std::vector<int> order;           ///< of elimination: bodies, outer ones first
-    std::vector<int> parent;          ///< of each body; world: it hangs there, or on nothing
+    std::vector<int> order;           ///< of elimination: bodies, outer ones first, and loops between them
+    std::vector<int> parent;          ///< of each unknown; world: it hangs there, or on nothing
     std::vector<JointRows> held;      ///< what holds each body on its parent; no rows: it floats
     std::vector<JointRows> closing;   ///< loops, and couplings of more than two bodies
     std::vector<std::vector<int>>
-        coupled;   ///< of each body, unknowns that are eliminated later; the parent first
+        coupled;   ///< of each unknown, those that are eliminated later; the parent first
 
 private:
     void collect(const ModelTables& tables, const RowPattern& pattern, std::vector<JointRows>& joints);
     void grow(int n_bodies, std::vector<JointRows>& joints);
+    void insert_loops(const ModelTables& tables);
+    std::vector<int> inside(const JointRows& loop, const ModelTables& tables) const;
     void couple(const ModelTables& tables, const RowPattern& pattern);
 };
+
+/// Whether the unknown is a body that holds rotors (Body::is_rotor): its axes know nothing of each other.
+bool is_point_of_rotors(const ModelTables& tables, int unknown);
 
 }   // namespace livens::inline spacetime_internal

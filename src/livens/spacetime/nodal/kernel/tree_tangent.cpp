@@ -2,8 +2,8 @@
 // Outwards from the world a body moves with its parent and by its own freedoms, y_b = T y_p + z theta at each
 // node, with T and z from the gradients of its joint there. From the leaves inwards the freedoms of all nodes
 // of a body are eliminated together, and what is left of its inertia, mass and loads goes to its parent.
-// Joints that close loops are unknowns of their own, which come last (docs/theory.md, "Without a tangent",
-// Stiff loads).
+// Joints that close loops are unknowns of their own, which go once what is inside of them is gone: then they
+// have pivots, -G J^-1 G^T of it (docs/theory.md, "Without a tangent", Stiff loads).
 #include "livens/spacetime/nodal/kernel/tree_tangent.h"
 
 #include <algorithm>
@@ -46,8 +46,15 @@ void TreeTangent::use(const std::shared_ptr<const RowPattern>& pattern)
     blocks_.resize(sizes, rule_.degree);
     right_.assign(static_cast<std::size_t>(blocks_.first(blocks_.n_unknowns())), 0.0);
     left_ = right_;
-    motions_.assign(tables_.bodies.size(), {});
-    gone_.assign(tables_.bodies.size(), {});
+    motions_.assign(sizes.size(), {});
+    gone_.assign(sizes.size(), {});
+    for (int u = first_loop(); u < blocks_.n_unknowns(); ++u) {   // all its multipliers are free
+        JointMotion& motion = motions_[static_cast<std::size_t>(u)];
+        const int m = motion.f = blocks_.size(u), p = rule_.degree;
+        motion.z_rows.assign(static_cast<std::size_t>(m * m * p), 0.0);
+        for (int r = 0; r < m; ++r) std::fill_n(motion.z_rows.begin() + (r * m + r) * p, p, 1.0);
+        motion.z_columns = motion.z_rows;
+    }
 }
 
 /// k_AB / h: scaled twists have the mass 1.
@@ -174,29 +181,13 @@ bool TreeTangent::eliminate(int b)
         gone.W[k] = from_left(motion.z_rows, d, f, p, {blocks_.of(b, v), d * p, n * p});
         gone.D.solve(gone.W[k].data(), n * p);
     }
+    const bool is_apart = is_point_of_rotors(tables_, b);
     for (std::size_t k = 0; k < coupled.size(); ++k)
         for (std::size_t l = 0; l < coupled.size(); ++l)
-            subtract_product(blocks_.of(coupled[k], coupled[l]), gone.E[k], gone.W[l],
-                             blocks_.size(coupled[k]) * p, f * p, blocks_.size(coupled[l]) * p);
+            if (k == l || !is_apart)
+                subtract_product(blocks_.of(coupled[k], coupled[l]), gone.E[k], gone.W[l],
+                                 blocks_.size(coupled[k]) * p, f * p, blocks_.size(coupled[l]) * p);
     return true;
-}
-
-/// What is left once all bodies are gone.
-bool TreeTangent::factorise_loops()
-{
-    const int p = rule_.degree, begin = blocks_.first(first_loop()), n = blocks_.n_unknowns();
-    const int size = blocks_.first(n) - begin;
-    loops_.A.assign(static_cast<std::size_t>(size * size), 0.0);
-    for (int u = first_loop(); u < n; ++u)
-        for (int v = first_loop(); v < n; ++v) {
-            const Numbers& J = blocks_.of(u, v);
-            const int columns = blocks_.size(v) * p;
-            for (int r = 0; r < blocks_.size(u) * p; ++r)
-                std::copy_n(J.begin() + r * columns, columns,
-                            loops_.A.begin() + (blocks_.first(u) - begin + r) * size + blocks_.first(v) -
-                                begin);
-        }
-    return loops_.factorise(size);
 }
 
 bool TreeTangent::factorise(const WindowLayout& layout, const lanes::Values& start,
@@ -209,9 +200,12 @@ bool TreeTangent::factorise(const WindowLayout& layout, const lanes::Values& sta
     add_loads(layout, nodes, slopes.loads);
     add_forces_of_joints(layout, nodes, slopes);
     add_loops(gradients);
-    for (const int b : plan_->order)
-        if (!gradients.find(b, *plan_, motions_[static_cast<std::size_t>(b)]) || !eliminate(b)) return false;
-    return factorise_loops();
+    for (const int u : plan_->order) {
+        const bool is_body = u < first_loop();
+        if (is_body && !gradients.find(u, *plan_, motions_[static_cast<std::size_t>(u)])) return false;
+        if (!eliminate(u)) return false;
+    }
+    return true;
 }
 
 /// The body's freedoms as its own rows ask for, which its parent and others will change.
@@ -259,7 +253,7 @@ void TreeTangent::go_outwards(int b, const lanes::Values& nodes)
                 y += motion.z_columns[(i * motion.f + k) * p + l] * theta[k * p + l];
             for (int k = 0; k < n; ++k)
                 y += motion.T_columns[(i * n + k) * p + l] * left_[blocks_.first(above) + k * p + l];
-            nodes.step[(tables_.bodies[b].first + i) * width_ + l] = y;
+            if (b < first_loop()) nodes.step[(tables_.bodies[b].first + i) * width_ + l] = y;
         }
 }
 
@@ -272,12 +266,7 @@ void TreeTangent::propose(const lanes::Values& nodes)
             for (int A = 0; A < p; ++A)
                 right_[blocks_.first(b) + i * p + A] =
                     -nodes.rows[(tables_.bodies[b].first + i) * width_ + A];
-    for (const int b : plan_->order) go_inwards(b);
-    if (!plan_->closing.empty()) {
-        const int begin = blocks_.first(first_loop());
-        std::copy(right_.begin() + begin, right_.end(), left_.begin() + begin);
-        loops_.solve(left_.data() + begin, 1);
-    }
+    for (const int u : plan_->order) go_inwards(u);
     for (std::size_t i = plan_->order.size(); i-- > 0;) go_outwards(plan_->order[i], nodes);
 }
 

@@ -45,8 +45,8 @@ public:
     void propose(const lanes::Values& nodes);
 
 private:
-    /// What is left of a body when it is gone: D = z^T J z, and for each unknown that it is coupled with J z
-    /// and D^-1 z^T J.
+    /// What is left of an unknown when it is gone: D = z^T J z, and for each unknown that it is coupled with
+    /// J z and D^-1 z^T J.
     struct Eliminated {
         SquareFactor D;
         std::vector<Numbers> E, W;
@@ -56,11 +56,10 @@ private:
     void add_loads(const WindowLayout& layout, const lanes::Values& nodes, LoadSlopes& slopes);
     void add_forces_of_joints(const WindowLayout& layout, const lanes::Values& nodes, TangentSlopes& slopes);
     void add_loops(const NodeGradients& gradients);
-    bool eliminate(int body);
+    bool eliminate(int unknown);
     void pass_to_parent(int body);
-    bool factorise_loops();
-    void go_inwards(int body);
-    void go_outwards(int body, const lanes::Values& nodes);
+    void go_inwards(int unknown);
+    void go_outwards(int unknown, const lanes::Values& nodes);
     int first_loop() const { return tables_.n_bodies(); }
 
     const ModelTables& tables_;
@@ -71,7 +70,6 @@ private:
     TreeBlocks blocks_;
     std::vector<JointMotion> motions_;
     std::vector<Eliminated> gone_;
-    SquareFactor loops_;
     Numbers right_, left_;
 };
 
