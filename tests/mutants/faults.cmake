@@ -1506,7 +1506,31 @@ livens_mutant(NAME given_places_have_no_error
 # What rounding may move is not compared: motions that the conditions leave free are told as known.
 livens_mutant(NAME free_motions_are_taken
               FILE spacetime/solve_mesh.cpp
-              OLD [[if (found.size <= undetermined) return;]]
-              NEW [[if (found.size <= 1e300) return;]]
+              OLD [[if (found.size <= undetermined) return found.moved;]]
+              NEW [[if (found.size <= 1e300) return found.moved;]]
               TESTS_OF convergence
               MUST_FAIL LobattoEnds.ConjugateTimesOfAPendulumAreSingular)
+
+# Elements of equal length again and again: as many as it takes where the motion is fastest.
+livens_mutant(NAME elements_between_ends_are_even
+              FILE spacetime/accuracy/remeshing.cpp
+              OLD [[lengths[e] = std::clamp(share * scales_[e], most_shrunk * known, most_stretched * known);]]
+              NEW [[lengths[e] = std::clamp(share * *std::ranges::min_element(scales_), most_shrunk * known, most_stretched * known);]]
+              TESTS_OF convergence
+              MUST_FAIL AccuracyBetweenEnds.PutsElementsWhereTheyAreNeeded)
+
+# Two solutions that agree by chance are believed to any digit.
+livens_mutant(NAME rounding_between_ends_is_forgotten
+              FILE spacetime/accuracy/between_ends.cpp
+              OLD [[{ return rounding_share * solution.moved_by_rounding; }]]
+              NEW [[{ return 0 * solution.moved_by_rounding; }]]
+              TESTS_OF convergence
+              MUST_FAIL AccuracyBetweenEnds.IsGivenUpWhereRoundingIsMore)
+
+# Element ends beside the bends of a law are taken for them: both solutions have the same error.
+livens_mutant(NAME bends_between_ends_are_believed
+              FILE spacetime/accuracy/between_ends.cpp
+              OLD [[const bool is_good = has_stops_ && !is_bent && error <= span_.accuracy;]]
+              NEW [[const bool is_good = has_stops_ && error <= span_.accuracy;]]
+              TESTS_OF convergence
+              MUST_FAIL AccuracyBetweenEnds.EndsElementsWhereLawsBend)

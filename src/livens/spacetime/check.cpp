@@ -97,7 +97,6 @@ void refuse_laws_of_the_motion(const Model& model)
                               "use the estimate by a second solution"});
 }
 
-/// What finds its elements itself can only march.
 void check_accuracy(const Conditions& given, const Span& span, const Method& method,
                     const SolveOptions& options)
 {
@@ -112,8 +111,8 @@ void check_accuracy(const Conditions& given, const Span& span, const Method& met
     const auto* lobatto = std::get_if<Lobatto>(&method);
     const auto* either = std::get_if<AutomaticFamily>(&method);
     if (!is_nodal(method)) refuse("method.family", "only lobatto and radau find their elements themselves");
-    if (given.at_start != Known::state)
-        refuse("start.given", "they are found while marching from a state at the start");
+    if (given.at_end == Known::state)
+        refuse("end.given", "they are found from a state at the start, or between conditions at both ends");
     if (lobatto != nullptr && lobatto->window != 1)
         refuse("method.window", "they are found one by one, in windows of one element");
     if (options.estimate != SolveOptions::Estimate::second)

@@ -54,6 +54,8 @@ struct Problem {
     std::shared_ptr<Prepared> prepared{};
     /// Whether conditions at both ends determine the motion is asked of its equations.
     bool is_determination_asked = true;
+    /// Between both ends no other motion is looked for than the one that is guessed.
+    bool is_only_guess = false;
 };
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

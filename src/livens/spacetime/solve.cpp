@@ -63,8 +63,12 @@ Solution solve_phase(const Model& model, const Problem& problem, const Time& tim
     }
     const auto* mesh = std::get_if<TimeMesh>(&time);
     // Elements that are not stated are found for the accuracy: theory.md, "To an accuracy".
-    if (mesh == nullptr)
-        return solve_to_accuracy(model, problem, *tried.ends, std::get<Span>(time), method, options);
+    if (mesh == nullptr) {
+        const bool is_march = problem.conditions.at_start == Known::state;
+        return is_march
+                   ? solve_to_accuracy(model, problem, *tried.ends, std::get<Span>(time), method, options)
+                   : solve_between_ends(model, problem, *tried.ends, std::get<Span>(time), method, options);
+    }
     return solve_mesh(model, problem, *mesh, *tried.ends, method, options);
 }
 

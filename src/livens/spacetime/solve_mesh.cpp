@@ -88,6 +88,7 @@ private:
     {
         const int attempt = n_plain_++;
         if (attempt == 0 && problem_.guess) return problem_.guess;
+        if (problem_.is_only_guess) return {};
         if (plain_.empty()) {
             plain_ = guesses_from_ends(model_, ends_, mesh_.ends);
             if (problem_.guess) plain_.insert(plain_.begin(), GuessFromEnds{});   // tried before
@@ -198,27 +199,28 @@ private:
 };
 
 /// Conditions at both ends may leave a motion free, at conjugate and focal times: then the solution is one of
-/// many, and its digits are made of rounding.
-void refuse_undetermined(Window& window, ConditionNumbersOfLast& last, SolveReport& report)
+/// many, and its digits are made of rounding. How far rounding may move it, in lengths and rad.
+double refuse_undetermined(Window& window, ConditionNumbersOfLast& last, SolveReport& report)
 {
     Uncertainty found;
     last.measure(report, [&](const auto&) { found = window.uncertainty(); });
-    if (last.is_stopped()) return;
+    if (last.is_stopped()) return 0;
     if (last.has_no_memory()) {
         report.status = SolveStatus::suspect;
         report.message =
             "memory ended before it was found whether the conditions at the two ends determine the motion";
-        return;
+        return 0;
     }
     // Inequality: what rounding may move <= 1e-4 of the motion, else the conditions do not determine it
     // (theory.md, "Windows").
-    if (found.size <= undetermined) return;
+    if (found.size <= undetermined) return found.moved;
     report.status = SolveStatus::singular;
     report.message = "the conditions at the two ends of time do not determine the motion: rounding alone may "
                      "move it by " +
                      to_text(found.size, 3) + " of itself, most of all " + found.name +
                      "; a neighbouring motion satisfies them as well, as at conjugate and focal times; try: "
                      "another duration, or the state at one end";
+    return found.moved;
 }
 
 /// Of momenta at a place that is not known, solving compares the part that joints leave to choose: a motion
@@ -299,7 +301,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     }
     ConditionNumbersOfLast last(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
     if (!ends.has_state() && !is_mixed && problem.is_determination_asked && report.converged())
-        refuse_undetermined(*window, last, report);
+        solution.moved_by_rounding = refuse_undetermined(*window, last, report);
     // A march forms no matrix of single elements, and where it divided some, not of all.
     const bool is_whole = is_mixed || !ends.has_state();
     if (options.condition && report.converged() && is_whole)

@@ -25,34 +25,22 @@ namespace {
 
 // Measured on 436 cases of twelve problems (docs/theory.md, "To an accuracy").
 constexpr double first_share = 2e-3;   // of the accuracy: what the elements of the first try lose
-constexpr double target = 0.2;         // of the accuracy: what the next try aims at
 constexpr double hopeless = 30;        // times the accuracy: where a try is broken off, but for the first
 // Where that is broken off, as soon as it is in vain, its error would have grown to the end as this power of
 // time, by no more than so much.
 constexpr double growth_in_time = 4, most_growth_in_time = 1e3;
 constexpr int most_tries = 6;
-constexpr double well_helped = 0.5;    // error by the least before, whose elements lost three times more
-constexpr double finest = 1e-22;       // that an element can be asked to lose
-constexpr double blind_share = 0.01;   // of the tolerance, for the next try where the second solution failed
-constexpr int preferred_degree = 7, high_degree = 12, lowest_degree = 3;
+constexpr double finest = 1e-22;   // that an element can be asked to lose
 // Rounding of an element grows with its degree, and elements of half the length add less of it.
 constexpr int quiet_degree = 9;
-constexpr double far_off = 3;   // accuracies of a try in vain, after which another may be good by chance
 constexpr int preferred_radau = 5, high_radau = 8;
-constexpr double high_accuracy = 1e-9;   // below, the high degree
 constexpr double fine_accuracy = 1e-8;   // below, rounding counts
 constexpr double all_digits = 1e-15;     // of the iteration
-constexpr double fit = 1.5;              // times the time between stops: longer elements are of no use
-// Of what elements may lose: what those of a fitting degree would lose. It costs little where they are as
-// long as stops are apart, and as much as another try where it is too low.
-constexpr double aimed_lower = 0.01;
 // Times the time of the motion: the longest element that would see something of what is to come, for the
 // first try, which may begin at rest.
 constexpr double seen_by = 2;
 constexpr int looked_at = 8;                              // elements that tell whether they fit between stops
 constexpr int least_first_piece = 16, least_piece = 32;   // elements that the second solution solves together
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 const int& degree_of(const Method& method)
 {
@@ -71,15 +59,7 @@ SolveOptions with_tolerance_for(double accuracy, int tries, SolveOptions options
     return options;
 }
 
-/// What becomes an element end: start, end, output times, jumps of loads and drives.
-std::vector<double> stops_of(const Model& model, const Span& span)
-{
-    std::vector<double> required = model.load_breaks();
-    required.insert(required.end(), span.output.begin(), span.output.end());
-    return make_time_mesh(span.start, span.end, 1, required).ends;
-}
-
-/// Of these, where a state is wanted and nothing jumps.
+/// Output times at which nothing jumps.
 std::vector<double> samples_of(const Model& model, const Span& span)
 {
     std::vector<double> samples = span.output;
@@ -176,8 +156,8 @@ public:
         const SolveReport& report = solution.report;
         const std::string tries = "try " + std::to_string(report.tries);
         if (grown_.rounding() > span_.accuracy)
-            return tries + "; rounding errors grow to " + to_text(grown_.rounding(), 3) +
-                   ", most in " + grown_.in_words(model_);
+            return tries + "; rounding errors grow to " + to_text(grown_.rounding(), 3) + ", most in " +
+                   grown_.in_words(model_);
         return tries + in_vain(report);
     }
 
@@ -374,6 +354,13 @@ private:
 };
 
 }   // namespace
+
+std::vector<double> stops_of(const Model& model, const Span& span)
+{
+    std::vector<double> required = model.load_breaks();
+    required.insert(required.end(), span.output.begin(), span.output.end());
+    return make_time_mesh(span.start, span.end, 1, required).ends;
+}
 
 double time_of_motion(const Model& model, const State& state)
 {

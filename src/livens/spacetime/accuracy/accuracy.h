@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/solve.h"
@@ -32,6 +33,14 @@ double time_of_motion(const Model& model, const State& state);
 Solution solve_to_accuracy(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
                            const Method& method, const SolveOptions& options,
                            const StopPredicate& stops = {});
+
+/// Instants that become element ends: start, end, output times, jumps of loads and drives.
+std::vector<double> stops_of(const Model& model, const Span& span);
+
+/// With conditions at both ends: elements of lobatto are solved all together, and again with others that lose
+/// alike, until the second solution is within the accuracy, ten times at most.
+Solution solve_between_ends(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
+                            const Method& method, const SolveOptions& options);
 
 /// The same by lobatto or radau; a note says why radau was taken, and of which body, spring or joint.
 Solution solve_to_accuracy(const Model& model, const Problem& problem, const Ends& ends, const Span& span,

@@ -56,6 +56,7 @@ struct Uncertainty {
     double size =
         0;   ///< how far the rounding of rows may move the solution, by the motion inside of elements
     std::string name;   ///< what moves most then: "body 'rod' near t = 0.5 s"
+    double moved = 0;   ///< that far, in lengths of the model or rad
 };
 
 /// What a family may know of single elements of a march forwards or backwards, beyond their equations. As it

@@ -287,7 +287,8 @@ Uncertainty NodalWindow::uncertainty()
     }
     if (body < 0) return {};
     return {size / system_.scale(),
-            "body '" + tables_.model->body_name(body) + "' near t = " + to_text(time, 4) + " s"};
+            "body '" + tables_.model->body_name(body) + "' near t = " + to_text(time, 4) + " s",
+            size * largest};
 }
 
 WorstResidual NodalWindow::worst() const

@@ -36,7 +36,8 @@ Table time_table()
              "Permitted error at all element ends: of centres of mass relative to the model "
              "length, and of orientations in rad. The elements, and the degree "
              "unless given, are chosen accordingly. For the families lobatto and radau with the state at the "
-             "initial time. Used by default if neither `elements` nor `knots` of `[method]` is given.",
+             "initial time, and for lobatto with conditions at both ends. Used by default if neither "
+             "`elements` nor `knots` of `[method]` is given.",
              "", "1e-6"}
              .within({0, 0.1, true})}};
 }

@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A motion between both ends of time as accurate as is asked for: all its elements are solved together, and
+// again with others until the second solution is near enough. (docs/theory.md, "An accuracy between both
+// ends")
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "livens/base/text.h"
+#include "livens/diagnostics/acceptance.h"
+#include "livens/diagnostics/diagnostics.h"
+#include "livens/dynamics/rows/tables.h"
+#include "livens/dynamics/start/prepared.h"
+#include "livens/spacetime/accuracy/accuracy.h"
+#include "livens/spacetime/accuracy/reference_solution.h"
+#include "livens/spacetime/accuracy/remeshing.h"
+#include "livens/spacetime/accuracy/until_accurate.h"
+#include "livens/spacetime/march/step_size_controller.h"
+#include "livens/spacetime/solve_mesh.h"
+
+namespace livens::inline spacetime_internal {
+
+namespace {
+
+constexpr double first_length = 1;   // of an element, in times of the motion
+constexpr int most_first = 10000;    // elements
+constexpr int most_searches = 3;     // meshes on which a motion is looked for, each twice as fine
+constexpr int most_meshes = 10;
+constexpr int most_in_vain = 2;         // tries that did not help
+constexpr int most_lost = 3;            // tries that did not find the motion of the one before
+constexpr double telling = 1e-2;        // errors that are larger say no more than that elements are too long
+constexpr double most_response = 100;   // an error by what elements lose together
+constexpr double wasteful = 1.5;        // times the elements that are needed
+/// Of what rounding may move the motion by, if all of it went the worst way: what it does move it by.
+constexpr double rounding_share = 0.2;
+constexpr double nothing = 1e-4;           // of the error: what elements lose together does not make it
+constexpr double coarsened_share = 2e-3;   // of the accuracy: what longer elements may lose together
+constexpr double near_rounding = 10;   // times what rounding makes of the motion: errors that may be no more
+
+/// Times that the motion has between the ends, each as long as something takes to move or turn by half a
+/// length or half a radian: at the mean of the rates there, or by steady motions from one to the other.
+double times_of_motion(const Model& model, const Ends& ends)
+{
+    State steady = ends.start;
+    const double duration = ends.end.t - ends.start.t;
+    for (std::size_t b = 0; b < steady.X.size(); ++b)
+        steady.V[b] = (1 / duration) * (ends.end.X[b] - ends.start.X[b]);
+    const auto rate = [&](const State& state) { return 1 / time_of_motion(model, state); };
+    return duration * std::max(0.5 * (rate(ends.start) + rate(ends.end)), rate(steady));
+}
+
+TimeMesh halved(const TimeMesh& mesh)
+{
+    TimeMesh fine{{mesh.start()}, mesh.required};
+    for (int e = 0; e < mesh.n_elements(); ++e) {
+        fine.ends.push_back(mesh.ends[e] + 0.5 * mesh.length(e));
+        fine.ends.push_back(mesh.ends[e + 1]);
+    }
+    return fine;
+}
+
+/// Where laws of loads bend on the way of a motion: from each element's own state to its end, or to the next
+/// one that is not one of the bends as they were known before.
+std::vector<double> bends_of(const Model& model, const Problem& problem, const Motion& motion,
+                             const std::vector<double>& known, const Lobatto& lobatto, SolveOptions options)
+{
+    std::vector<double> bends;
+    if (!options.end_at_bends || !model.has_pieces()) return bends;
+    options.condition = options.judge = false;
+    options.initial = StartPolicy::project;
+    for (int e = 0, next = 1; e < motion.n_elements(); e = next++) {
+        while (std::ranges::binary_search(known, motion.mesh.ends[next])) ++next;
+        Problem part{{motion.at_end(e)}};
+        part.prepared = problem.prepared;
+        const TimeMesh one{{motion.mesh.ends[e], motion.mesh.ends[next]}};
+        const Solution s = solve_unjudged(model, part, one, lobatto, options);
+        bends.insert(bends.end(), s.motion.mesh.bends.begin(), s.motion.mesh.bends.end());
+    }
+    return bends;
+}
+
+class BetweenEnds final : public RepeatedMarch {
+public:
+    BetweenEnds(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
+                const Lobatto& lobatto, const SolveOptions& options)
+        : model_(model), problem_(problem), ends_(ends), span_(span), lobatto_(lobatto), options_(options),
+          stops_(stops_of(model, span)), is_degree_free_(lobatto.degree == 0),
+          gap_(nearest_ends * (span.end - span.start))
+    {
+        if (is_degree_free_) lobatto_.degree = span.accuracy < high_accuracy ? high_degree : preferred_degree;
+        const double times = times_of_motion(model, ends), wanted = times / first_length;
+        rate_ = times / (span.end - span.start);
+        begin_with(static_cast<int>(std::ceil(std::clamp(wanted, 1.0, 1.0 * most_first))));
+        const double p_f = lobatto_.degree * ModelTables(model, ends.independent).freedoms();
+        bytes_ = 8 * (4 * p_f * p_f + 24 * lobatto_.degree * (12 * model.n_bodies() + model.n_rows()));
+    }
+
+    Solution solve() override
+    {
+        Problem problem = problem_;
+        if (found_) {
+            problem.guess = [this](double t) { return found_->motion.at(t); };
+            problem.is_only_guess = true;
+        }
+        Solution solution = solve_mesh(model_, problem, mesh_, ends_, lobatto_, options_);
+        solution.report.evaluations_in_all = solution.report.evaluations;
+        if (solution.report.converged()) estimate(problem, solution);
+        return solution;
+    }
+
+    AfterTry judge(Solution& solution, int tries) override
+    {
+        SolveReport& report = solution.report;
+        report.tries = tries;
+        if (report.status == SolveStatus::cancelled) return AfterTry::accept;
+        if (!report.converged() && found_) return lost(solution, tries);
+        if (!found_ && !is_seen(solution) && search_on(tries)) return AfterTry::again;
+        if (!report.converged()) return AfterTry::accept;
+        const double error = error_of(solution);
+        const bool is_bent = find_bends(solution.motion);
+        const bool is_good = has_stops_ && !is_bent && error <= span_.accuracy;
+        const bool is_believed = is_once_good_ || in_vain_ <= far_off * span_.accuracy;
+        is_once_good_ = is_good;
+        if (has_stops_ && !is_bent && !is_good && error < telling) count(error);
+        return next(solution, tries, is_good && is_believed);
+    }
+
+    std::string why_not(const Solution& solution) const override
+    {
+        return "try " + std::to_string(solution.report.tries) + ", with " +
+               std::to_string(solution.motion.n_elements()) + " elements" + why_;
+    }
+    bool is_march() const override { return false; }
+
+private:
+    /// Elements of equal length between jumps of loads. Output times can wait.
+    void begin_with(int n)
+    {
+        n_first_ = n;
+        has_stops_ = span_.output.empty();
+        mesh_ = make_time_mesh(span_.start, span_.end, n, model_.load_breaks());
+    }
+
+    void estimate(Problem problem, Solution& solution) const
+    {
+        problem.is_only_guess = true;
+        const int n = solution.motion.n_elements();
+        ReferenceSolution second(model_, problem, lobatto_, options_, solution.motion);
+        const bool is_good = second.advance(n);
+        solution.report.evaluations_in_all += second.evaluations();
+        solution.estimate_seconds = second.seconds();
+        if (is_good) {
+            solution.estimate = second.take(n);
+            count_rounding(model_, std::vector<double>(solution.motion.mesh.ends.size(), rounded(solution)),
+                           solution.motion.mesh, solution.estimate);
+        } else if (second.report().status == SolveStatus::cancelled) {
+            solution.report.status = SolveStatus::cancelled;
+            solution.report.message = second.report().message;
+        } else {
+            solution.report.estimate_failed = "the second solution failed: " + second.report().message;
+        }
+    }
+
+    /// Two solutions may agree by chance to less.
+    static double rounded(const Solution& solution) { return rounding_share * solution.moved_by_rounding; }
+
+    static double error_of(const Solution& solution)
+    {
+        const double error = solution.estimate.empty() ? infinite : solution.estimate.largest;
+        return std::isnan(error) ? infinite : error;
+    }
+
+    /// Whether a law bends elsewhere than elements end, by more than the motion goes in the accuracy. Both
+    /// solutions would miss that alike.
+    bool find_bends(const Motion& motion)
+    {
+        std::vector<double> bends = bends_of(model_, problem_, motion, bends_, lobatto_, options_);
+        const auto is_off = [&](double t) {
+            const int e = motion.mesh.element_at(t);
+            return std::min(t - motion.mesh.ends[e], motion.mesh.ends[e + 1] - t) > span_.accuracy / rate_;
+        };
+        const bool is_bent = std::ranges::any_of(bends, is_off);
+        stops_ = stops_of(model_, span_);
+        std::erase_if(bends, [&](double t) {
+            return std::ranges::any_of(stops_, [&](double stop) { return std::abs(t - stop) <= gap_; });
+        });
+        stops_.insert(stops_.end(), bends.begin(), bends.end());
+        std::ranges::sort(stops_);
+        bends_ = std::move(bends);
+        return is_bent;
+    }
+
+    void count(double error)
+    {
+        const bool has_helped = error < well_helped * least_;
+        n_in_vain_ = has_helped ? 0 : n_in_vain_ + 1;
+        if (!has_helped) in_vain_ = std::max(in_vain_, error);
+        least_ = std::min(least_, error);
+    }
+
+    /// Whether there is a motion that its elements have seen.
+    bool is_seen(const Solution& solution) const
+    {
+        return solution.report.converged() &&
+               velocity_jump(model_, solution.motion).largest <= acceptable_velocity_jump;
+    }
+
+    /// Elements that are too long may have no solution that is near one of the motion's.
+    bool search_on(int tries)
+    {
+        if (tries >= most_searches || n_first_ >= most_first) return false;
+        begin_with(2 * n_first_);
+        return true;
+    }
+
+    /// The motion of an earlier try is all that there is.
+    AfterTry lost(Solution& solution, int tries)
+    {
+        if (tries < most_meshes && ++n_lost_ < most_lost) {
+            mesh_ = halved(mesh_);
+            return AfterTry::again;
+        }
+        why_ = ": on " + std::to_string(mesh_.n_elements()) + " elements Newton's iteration does not find it";
+        take_best(solution);
+        return AfterTry::give_up;
+    }
+
+    AfterTry give_up(Solution& solution, const std::string& why)
+    {
+        why_ = why;
+        take_best(solution);
+        return AfterTry::give_up;
+    }
+
+    void take_best(Solution& solution)
+    {
+        if (found_ && (!solution.report.converged() || error_of(*found_) < error_of(solution))) {
+            found_->report.evaluations_in_all = solution.report.evaluations_in_all;
+            found_->estimate_seconds = solution.estimate_seconds;
+            solution = std::move(*found_);
+        }
+        tell(solution);
+    }
+
+    /// How the motion was found is a matter of the first try.
+    void tell(Solution& solution) const
+    {
+        for (const std::string& note : told_)
+            if (std::ranges::find(solution.report.notes, note) == solution.report.notes.end())
+                solution.report.notes.push_back(note);
+    }
+
+    AfterTry next(Solution& solution, int tries, bool is_enough)
+    {
+        const double error = error_of(solution);
+        if (!found_) told_ = solution.report.notes;
+        const ElementScales scales(model_, solution.motion, solution.unseen);
+        const int n = solution.motion.n_elements();
+        const double lost = aimed(scales.mean_error() * n, error) / n;
+        if (is_enough) return accept(solution, scales, lost);
+        if (rounded(solution) > span_.accuracy && error <= near_rounding * rounded(solution))
+            return give_up(solution, in_vain(solution));
+        if (n_in_vain_ >= most_in_vain || !(lost > 0)) return give_up(solution, in_vain(solution));
+        if (tries >= most_meshes) return give_up(solution, ", and as many tries before it");
+        if (is_degree_free_ && !found_) choose_degree(scales, lost);
+        TimeMesh mesh = mesh_of(scales, lost);
+        if (mesh.n_elements() * bytes_ > options_.most_bytes)
+            return give_up(solution, "; the " + std::to_string(mesh.n_elements()) +
+                                         " of the next one take more memory than they may");
+        return go_on(std::move(mesh), solution);
+    }
+
+    /// A mesh on which a motion was looked for may have many times the elements that it needs.
+    AfterTry accept(Solution& solution, const ElementScales& scales, double lost)
+    {
+        if (!found_) {
+            TimeMesh mesh = mesh_of(scales, lost);
+            if (solution.motion.n_elements() > wasteful * mesh.n_elements())
+                return go_on(std::move(mesh), solution);
+        }
+        tell(solution);
+        return AfterTry::accept;
+    }
+
+    AfterTry go_on(TimeMesh mesh, Solution& solution)
+    {
+        mesh_ = std::move(mesh);
+        has_stops_ = true;
+        found_ = std::move(solution);
+        return AfterTry::again;
+    }
+
+    TimeMesh mesh_of(const ElementScales& scales, double lost) const
+    {
+        return {scales.ends(lobatto_.degree, lost, stops_), {stops_.begin() + 1, stops_.end() - 1}};
+    }
+
+    /// What elements of the next try shall lose together. 0: they do not lose what is missing.
+    double aimed(double lost, double error)
+    {
+        if (error >= telling) return blind_share * lost;
+        if (error > span_.accuracy && lost < nothing * error) {
+            // rounding adds up from element to element: longer ones have less of it, if they see enough
+            return std::exchange(is_coarsened_, true) ? 0 : coarsened_share * span_.accuracy;
+        }
+        const double ratio = target * span_.accuracy / error;
+        if (error > span_.accuracy) return lost * std::min(std::pow(ratio, 1 + 0.5 / lobatto_.degree), 0.3);
+        return target * span_.accuracy / std::clamp(error / lost, 1.0, most_response);
+    }
+
+    /// The highest whose elements are not much longer than the time between stops.
+    void choose_degree(const ElementScales& scales, double error)
+    {
+        const double stop = (span_.end - span_.start) / static_cast<double>(stops_.size() - 1);
+        int& degree = lobatto_.degree;
+        while (degree > lowest_degree && scales.mean_length(degree, aimed_lower * error) > fit * stop)
+            --degree;
+    }
+
+    std::string in_vain(const Solution& solution) const
+    {
+        const LargestError& found = solution.estimate;
+        std::string text = "; more of them help no more: ";
+        if (rounded(solution) > span_.accuracy)
+            text += "rounding may move the motion by " + to_text(solution.moved_by_rounding, 3);
+        else if (found.unseen_load >= 0)
+            text += "the law of load '" + model_.loads()[static_cast<std::size_t>(found.unseen_load)].name +
+                    "' changes too fast inside them";
+        else
+            text += model_.loads().empty() && !model_.has_drives()
+                        ? "rounding is left"
+                        : "rounding is left, or a law bends or jumps inside them";
+        return text;
+    }
+
+    const Model& model_;
+    const Problem& problem_;
+    const Ends& ends_;
+    const Span& span_;
+    Lobatto lobatto_;
+    SolveOptions options_;
+    std::vector<double> stops_, bends_;   // where elements of the next try end; of these, where laws bend
+    bool is_degree_free_;
+    int n_first_ = 0;
+    double bytes_ = 0;         // an element
+    double gap_;               // instants that are closer are one
+    double rate_ = 0;          // of the motion, 1/s
+    TimeMesh mesh_;            // of the next try
+    bool has_stops_ = false;   // it ends elements at all of them
+    std::optional<Solution> found_;
+    std::vector<std::string> told_;
+    std::string why_;
+    int n_in_vain_ = 0, n_lost_ = 0;
+    double least_ = infinite, in_vain_ = 0;   // errors
+    bool is_once_good_ = false, is_coarsened_ = false;
+};
+
+}   // namespace
+
+Solution solve_between_ends(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
+                            const Method& method, const SolveOptions& options)
+{
+    const auto* automatic = std::get_if<AutomaticFamily>(&method);
+    const Lobatto lobatto = automatic != nullptr ? Lobatto{automatic->degree} : std::get<Lobatto>(method);
+    BetweenEnds tries(model, problem, ends, span, lobatto, options);
+    return until_accurate(tries, model, span.accuracy, span.end);
+}
+
+}   // namespace livens::inline spacetime_internal
