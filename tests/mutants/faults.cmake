@@ -1534,3 +1534,37 @@ livens_mutant(NAME bends_between_ends_are_believed
               NEW [[const bool is_good = has_stops_ && error <= span_.accuracy;]]
               TESTS_OF convergence
               MUST_FAIL AccuracyBetweenEnds.EndsElementsWhereLawsBend)
+
+# The momentum at the end of time enters the balances as that at the start does.
+livens_mutant(NAME border_sign
+              FILE spacetime/nodal/elimination.cpp
+              OLD [[last_row[i * 2 * f_ + f_ + i] = -1;]]
+              NEW [[last_row[i * 2 * f_ + f_ + i] = 1;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL ComponentEquations.HaveAnExactTangent)
+
+# Conditions are differentiated as if no momentum were there: Newton's iteration crawls.
+livens_mutant(NAME conditions_at_rest
+              FILE spacetime/march/end_point.cpp
+              OLD [[moved.place_moved(*this, y.data(), momenta_)]]
+              NEW [[moved.place_moved(*this, y.data(), std::vector<double>(momenta_.size()))]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL ComponentEquations.HaveAnExactTangent)
+
+# Two conditions that say one thing are taken for two.
+livens_mutant(NAME conditions_said_twice
+              FILE spacetime/march/components.cpp
+              OLD [[if (!is_dependent(rows[i])) continue;
+            const Condition& one]]
+              NEW [[if (true) continue;
+            const Condition& one]]
+              TESTS_OF convergence
+              MUST_FAIL Components.ThatDoNotDetermineAMotionAreRefusedByName)
+
+# What was stated by component is not compared with what was found.
+livens_mutant(NAME components_unmet
+              FILE spacetime/march/component_values.cpp
+              OLD [[if (std::abs(values[i] - one.value) <= met_component * scale) continue;]]
+              NEW [[if (std::abs(values[i] - one.value) <= 1e30 * scale) continue;]]
+              TESTS_OF convergence
+              MUST_FAIL Components.ThatAreNotMetAreSuspect)

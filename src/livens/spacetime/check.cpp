@@ -3,6 +3,7 @@
 // Conditions at the ends of time decide what methods can do (theory.md, "Windows"); each refusal names the
 // key of the scenario, the reason and a way out.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "livens/base/error.h"
@@ -126,6 +127,38 @@ void check_accuracy(const Conditions& given, const Span& span, const Method& met
     make_time_mesh(span.start, span.end, 1, span.output);   // throws
 }
 
+/// Conditions by component take all of time at once.
+void check_components(const Model& model, const Conditions& given, const Time& time, const Method& method)
+{
+    check_state(model, given.start, "start");
+    if (!given.end.X.empty()) check_state(model, given.end, "end");
+    if (given.at_start != Known::nothing || given.at_end != Known::nothing)
+        throw InputError({"boundary-conditions", "start.known",
+                          "conditions by component stand beside what is given for all bodies", "",
+                          "one of the two", "",
+                          "leave start.given and end.given away, and state what they knew by component"});
+    const auto refuse = [](const char* path, const std::string& what, const std::string& why,
+                           const std::string& help) {
+        throw InputError(
+            {"conditions-method", path, what + " cannot take conditions by component", "", "", why, help});
+    };
+    if (!std::holds_alternative<Lobatto>(method))
+        refuse("method.family", "the method " + name_of(method),
+               "momenta at both ends are unknowns of lobatto alone", "use lobatto");
+    if (model.has_events())
+        refuse("start.known", "a mechanism whose joints or drives act for a part of the time",
+               "its motion is solved phase by phase, from a state", "give the state at the start");
+    if (std::holds_alternative<Span>(time))
+        refuse("time.accuracy", "a motion to an accuracy",
+               "elements are found while marching from a state at the start",
+               "give elements instead of the accuracy");
+    for (const Condition& one : given.components)
+        if (!std::isfinite(one.value))
+            throw InputError({"not-finite", "start.known[" + one.quantity.name + "]",
+                              "the value of '" + one.quantity.name + "' is no number", to_text(one.value),
+                              "a finite number", "", ""});
+}
+
 void check_conditions(const Model& model, const Conditions& given, const Method& method)
 {
     const auto is_at = [&](const State& state, Known known, const char* path) {
@@ -173,7 +206,10 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
         throw InputError({"no-bodies", "body", "a model needs at least one body", "", "", "", "add a body"});
     refuse_rotors(model, problem.conditions, method);
     refuse_special_rows(model, method);
-    check_conditions(model, problem.conditions, method);
+    if (problem.conditions.components.empty())
+        check_conditions(model, problem.conditions, method);
+    else
+        check_components(model, problem.conditions, time, method);
     check_events(model, problem, time, method);
     const auto* mesh = std::get_if<TimeMesh>(&time);
     if (mesh != nullptr && mesh->n_elements() < 1)

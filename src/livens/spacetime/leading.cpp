@@ -11,6 +11,7 @@
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
 #include "livens/solvers/patience.h"
+#include "livens/spacetime/march/components.h"
 #include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/nodal/window.h"
 
@@ -56,6 +57,7 @@ public:
     Leading go(const Guess& begin)
     {
         arrival_ = begin(from_start_ ? mesh_.end() : mesh_.start());
+        if (ends_.has_components()) arrived_ = values_in(model_, ends_, begin, instants());
         Guess before, last = begin;
         Leading led;
         double previous = 0, step = first_step;
@@ -80,8 +82,25 @@ public:
     }
 
 private:
+    /// Element ends and nodes between them.
+    std::vector<double> instants() const
+    {
+        std::vector<double> all;
+        for (int e = 0; e < mesh_.n_elements(); ++e)
+            for (int a = 0; a < rule_.degree; ++a)
+                all.push_back(mesh_.ends[e] + rule_.nodes[a] * mesh_.length(e));
+        all.push_back(mesh_.end());
+        return all;
+    }
+
     Guess solved(double share, const Guess& guess)
     {
+        if (ends_.has_components()) {
+            Ends ends = ends_;
+            ends.led_values = arrived_;
+            ends.led_share = share;
+            return solved_between(ends, guess);
+        }
         Problem problem{{ends_.start, ends_.at_start, ends_.end, ends_.at_end}};
         State& far = from_start_ ? problem.conditions.end : problem.conditions.start;
         const State stated = far;
@@ -93,6 +112,11 @@ private:
         Ends& ends = *tried.ends;
         ends.led_from = arrival_;
         ends.led_share = is_place ? 1 : share;
+        return solved_between(ends, guess);
+    }
+
+    Guess solved_between(const Ends& ends, const Guess& guess)
+    {
         const ModelTables tables(model_, ends.independent);
         NodalWindow window(tables, mesh_, ends, rule_);
         WindowOptions options;
@@ -117,6 +141,7 @@ private:
     ElementRule rule_;
     bool from_start_;
     State arrival_;
+    std::vector<double> arrived_;   // of conditions by component
 };
 
 }   // namespace

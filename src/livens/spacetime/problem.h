@@ -6,9 +6,11 @@
 #include <functional>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
+#include "livens/multibody/state_quantities.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -32,14 +34,27 @@ constexpr std::array<std::string_view, 4> words_of(Known)
 inline bool knows_positions(Known known) { return known == Known::positions || known == Known::state; }
 inline bool knows_momenta(Known known) { return known == Known::momenta || known == Known::state; }
 
+/// One number that is known at an end of time, or by how much it is more at the end than at the start.
+struct Condition {
+    enum class At { start, end, both };
+
+    StateQuantity quantity;
+    double value = 0;
+    At at = At::start;
+};
+
 /// Conditions at the ends of time, for all bodies alike. Two halves must be known: the state at one end, or
 /// positions or momenta at each. Stated values that are not known serve as a guess: V where positions are
 /// known, X where momenta are (zeros mean none).
+///
+/// Or component by component: then nothing is known at the ends but these, twice as many as the joints leave
+/// motions free, and both states are guesses; one without bodies is none.
 struct Conditions {
     State start;
     Known at_start = Known::state;
     State end{};
     Known at_end = Known::nothing;
+    std::vector<Condition> components{};
 };
 
 struct Problem {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -17,6 +18,7 @@
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/accuracy/turning_springs.h"
 #include "livens/spacetime/guess.h"
+#include "livens/spacetime/guess_of_components.h"
 #include "livens/spacetime/leading.h"
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/march/windows.h"
@@ -90,14 +92,14 @@ private:
         if (attempt == 0 && problem_.guess) return problem_.guess;
         if (problem_.is_only_guess) return {};
         if (plain_.empty()) {
-            plain_ = guesses_from_ends(model_, ends_, mesh_.ends);
+            plain_ = guesses_from_ends(model_, guessed_ends(), mesh_.ends);
             if (problem_.guess) plain_.insert(plain_.begin(), GuessFromEnds{});   // tried before
         }
         if (attempt < static_cast<int>(plain_.size())) return plain_[attempt].motion;
         const auto* mixed = std::get_if<Mixed>(&method_);
         const int degree = mixed != nullptr ? mixed->witness().degree : rule_of(method_).degree;
         while (true) {
-            const GuessFromEnds march = march_to_lead(model_, ends_, mesh_.ends, lead_);
+            const GuessFromEnds march = march_to_lead(model_, guessed_ends(), mesh_.ends, lead_);
             if (!march.motion) break;
             lead_ = march.next;
             const Leading led = lead(model_, ends_, mesh_, degree, march.motion, march.from_start);
@@ -110,12 +112,20 @@ private:
         return {};
     }
 
+    const Ends& guessed_ends()
+    {
+        if (!ends_.has_components()) return ends_;
+        if (!guessed_) guessed_ = ends_for_guesses(model_, ends_, mesh_.ends);
+        return *guessed_;
+    }
+
     const Model& model_;
     const Problem& problem_;
     const TimeMesh& mesh_;
     const Ends& ends_;
     const Method& method_;
     const Window& window_;
+    std::optional<Ends> guessed_;   // of conditions by component
     std::vector<GuessFromEnds> plain_;
     int n_plain_ = 0, lead_ = 0;   // guesses, and marches that were led, so far
     std::string told_;

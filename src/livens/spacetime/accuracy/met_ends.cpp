@@ -8,6 +8,7 @@
 #include "livens/base/text.h"
 #include "livens/diagnostics/estimate.h"
 #include "livens/multibody/body.h"
+#include "livens/spacetime/march/components.h"
 #include "livens/spacetime/march/ends.h"
 
 namespace livens::inline spacetime_internal {
@@ -162,7 +163,7 @@ private:
 std::vector<std::string> unmet(const Model& model, const Ends& ends, const Motion& motion,
                                const ErrorEstimate& estimate)
 {
-    std::vector<std::string> reasons;
+    std::vector<std::string> reasons = unmet_components(model, ends, motion);
     for (const End& end : {End{"start", ends.at_start, ends.start, 0},
                            End{"end", ends.at_end, ends.end, motion.n_elements()}}) {
         if (end.known == Known::nothing) continue;

@@ -24,12 +24,14 @@ namespace livens::inline spacetime_internal {
 /// | P at the first, X at the last| 0..n-1    | 0..n-1               | 0..n-1      |
 /// | P at both                    | 0..n      | 0..n                 | 0..n        |
 /// | X and P at the first, radau  | 1..n      | 1..n                 | 1..n        |
+/// | components                   | 0..n      | 0..n                 | 0..n        |
 struct WindowLayout {
     std::vector<double> times;    ///< element ends
     std::vector<double> angles;   ///< of loads at the first node, or about there; see Turns
     int degree = 1;
     Points points = Points::lobatto;   ///< radau: one element, whose state is known at the first node
     bool X_first = true, P_first = true, X_last = false, P_last = false;
+    bool are_momenta_unknown = false;   ///< those at both ends; conditions by component are rows instead
 
     int n_elements() const { return static_cast<int>(times.size()) - 1; }
     int n_nodes() const { return n_elements() * degree + 1; }

@@ -5,6 +5,7 @@
 
 #include "livens/dynamics/start/prepared.h"
 #include "livens/dynamics/start/singular.h"
+#include "livens/spacetime/march/components.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -34,6 +35,28 @@ std::optional<Complaint> close_end(const Model& model, State& state, Known known
     return {};
 }
 
+/// Guesses at both ends, of which that at the start says which rows are independent; a guess at the end that
+/// no place near closes, or that nobody gave, is the one at the start.
+std::optional<Complaint> close_guesses(const Model& model, Ends& ends)
+{
+    TriedStart start = try_consistent_start(model, ends.start, StartPolicy::project);
+    if (!start.closed) return std::move(start.why);
+    ends.start = std::move(start.closed->start);
+    ends.independent = std::move(start.closed->independent);
+    ends.redundant = std::move(start.closed->redundant);
+    const double t = ends.end.t;
+    ends.is_end_guessed = !ends.end.X.empty();
+    if (!ends.is_end_guessed) ends.end = ends.start;
+    ends.end.t = t;
+    TriedStart end = try_consistent_start(model, ends.end, StartPolicy::project);
+    if (end.closed) ends.end = std::move(end.closed->start);
+    const ModelTables tables(model, ends.independent);
+    if (std::optional<Complaint> why = why_undetermined(tables, ends)) return why;
+    ends.start = settled(tables, ends, Condition::At::start, ends.start);
+    if (ends.is_end_guessed) ends.end = settled(tables, ends, Condition::At::end, ends.end);
+    return {};
+}
+
 }   // namespace
 
 Problem with_prepared(Problem problem)
@@ -54,6 +77,11 @@ TriedEnds try_close_ends(const Model& model, const Problem& problem, double star
     ends.end = conditions.end;
     ends.start.t = start;
     ends.end.t = end;
+    ends.components = conditions.components;
+    if (ends.has_components()) {
+        if (std::optional<Complaint> why = close_guesses(model, ends)) return {{}, std::move(*why)};
+        return {std::move(ends), {}};
+    }
     std::optional<Complaint> why = close_end(model, ends.end, ends.at_end, policy, prepared, ends);
     if (!why) why = close_end(model, ends.start, ends.at_start, policy, prepared, ends);
     if (why) return {{}, std::move(*why)};

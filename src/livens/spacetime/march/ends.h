@@ -21,7 +21,19 @@ struct Ends {
     /// Momenta that are known at an end which is led: this share of the way from those of another state.
     State led_from{};
     double led_share = 1;
+    /// Component by component, instead of what is known above: states are then guesses that meet what is
+    /// stated at their end as far as they can. With the values that are led from, if they are.
+    std::vector<Condition> components{};
+    std::vector<double> led_values{};
+    bool is_end_guessed = false;   ///< else the state at the end is made of that at the start
 
+    /// What condition i is to be.
+    double value(std::size_t i) const
+    {
+        const double from = led_values.empty() ? components[i].value : led_values[i];
+        return led_share * components[i].value + (1 - led_share) * from;
+    }
+    bool has_components() const { return !components.empty(); }
     bool has_state() const { return at_start == Known::state || at_end == Known::state; }
     /// Windows follow each other from the end of time.
     bool is_backwards() const { return at_end == Known::state; }

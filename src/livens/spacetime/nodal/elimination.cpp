@@ -31,6 +31,7 @@ BlockStructure structure_of(const WindowLayout& layout, int freedoms)
     }
     for (int e = 0; e < layout.n_elements(); ++e)
         structure.elements.push_back({e * layout.degree, (e + 1) * layout.degree});
+    if (layout.are_momenta_unknown) structure.n_border = structure.n_closing = 2 * freedoms;
     return structure;
 }
 
@@ -68,6 +69,7 @@ public:
     void mass(int body, double factor, const double* H) override;
     void block(int body_i, int body_j, const double* values) override;
     void close() override;
+    void close_with(std::span<const double> closing) override;
     bool factorise() override { return f_ == 0 || solver_->factorise(matrix_) == Outcome::regular; }
     void solve(std::span<const double> rows, const double* range, double* y) override;
     void describe(SolveReport& report) const override
@@ -187,6 +189,20 @@ void NullSpaces::close()
     }
 }
 
+/// P(0) is added at the first node, P(T) taken off at the last.
+void NullSpaces::close_with(std::span<const double> closing)
+{
+    if (f_ == 0) return;
+    const int last = structure_.n_elements() - 1;
+    for (int e = 0; e <= last; ++e) std::ranges::fill(matrix_.border_storage(e), 0.0);
+    double *first_row = matrix_.border(0, 0), *last_row = matrix_.border(last, structure_.n_nodes() - 1);
+    for (int i = 0; i < f_; ++i) {
+        first_row[i * 2 * f_ + i] = 1;
+        last_row[i * 2 * f_ + f_ + i] = -1;
+    }
+    matrix_.closing().assign(closing.begin(), closing.end());
+}
+
 /// Reduced rows at the nodes as they stand now, to those that the factors belong to. Where a node has moved,
 /// its null space and its axes have turned: rows in turned coordinates would not fall with a step, however
 /// short, off a solution.
@@ -239,6 +255,7 @@ void NullSpaces::solve(std::span<const double> rows, const double*, double* y)
         x += f_;
         y += n;
     }
+    std::copy_n(x, structure_.n_border, y);
 }
 
 /// A few powers of A^-1 W W A^-T, W the sizes of rows: the largest singular value of A^-1 W, from below, and
@@ -263,10 +280,12 @@ double NullSpaces::least_resisted(std::span<const double> rows, std::vector<doub
         double* row = x.data();
         for (int A = 0; A < structure_.n_nodes(); ++A)
             for (int i = 0; layout_->is_active(A) && i < f_; ++i) *row++ *= rows[A] * rows[A];
+        for (int i = 0; i < structure_.n_closing; ++i)
+            *row++ *= rows[structure_.n_nodes() + i] * rows[structure_.n_nodes() + i];
         solver_->solve(x);
         square = normalise();
     }
-    y.assign(static_cast<std::size_t>(n / f_ * tables_.n_twists), 0.0);
+    y.assign(static_cast<std::size_t>((n - structure_.n_border) / f_ * tables_.n_twists), 0.0);
     const double* from = x.data();
     double* to = y.data();
     for (int A = 0; A < structure_.n_nodes(); ++A) {

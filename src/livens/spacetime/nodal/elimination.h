@@ -18,16 +18,19 @@ class Elimination : public TangentSink {
 public:
     /// Takes the null spaces of all nodes, before a tangent is formed.
     virtual void begin(const WindowLayout& layout, const Nodes& nodes) = 0;
+    /// Conditions by component, after a tangent was formed: their rows by the free motions at the first node,
+    /// at the last, and by momenta along these, which are in the balances there.
+    virtual void close_with(std::span<const double> /*closing*/) {}
     virtual bool factorise() = 0;
     /// y <- the scaled twists of unknown nodes, node after node, that the reduced rows of active nodes ask
-    /// for.
+    /// for; with conditions by component their rows follow, and momenta along free motions in y.
     virtual void solve(std::span<const double> rows, const double* range, double* y) = 0;
     /// Whether solve() can take violations of the constraints in; else they are taken off before. `range`
     /// then holds the part of y across the null space at node 1 (in the basis), or null.
     virtual bool takes_constraints() const { return false; }
-    /// Of the last factors: how far rows of these sizes (of all nodes) may move the unknowns, by the sum of
-    /// their squares, an estimate; and the scaled twists of unknown nodes that move most. 0: they are not
-    /// kept.
+    /// Of the last factors: how far rows of these sizes (of all nodes, and of closing rows) may move the
+    /// unknowns, by the sum of their squares, an estimate; and the scaled twists of unknown nodes that move
+    /// most. 0: they are not kept.
     virtual double least_resisted(std::span<const double> /*rows*/, std::vector<double>& /*y*/) { return 0; }
     virtual void describe(SolveReport& report) const = 0;
     /// Of the tangent that was formed; uses it up.

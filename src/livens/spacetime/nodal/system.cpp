@@ -24,7 +24,8 @@ void NodalSystem::open(const WindowLayout& layout, const InstantState* first, co
 {
     const bool is_alike = layout.n_nodes() == layout_.n_nodes() && layout.X_first == layout_.X_first &&
                           layout.P_first == layout_.P_first && layout.X_last == layout_.X_last &&
-                          layout.P_last == layout_.P_last;
+                          layout.P_last == layout_.P_last &&
+                          layout.are_momenta_unknown == layout_.are_momenta_unknown;
     layout_ = layout;
     nodes_.open(layout_);
     if (!is_alike) rows_.open(layout_);
@@ -66,18 +67,50 @@ bool NodalSystem::settle()
     return true;
 }
 
-int NodalSystem::n_unknowns() const
+std::size_t NodalSystem::n_node_numbers() const
 {
     const int n_known = (layout_.X_first ? 1 : 0) + (layout_.X_last ? 1 : 0);
-    return (layout_.n_nodes() - n_known) * tables_.n_twists;
+    return static_cast<std::size_t>(layout_.n_nodes() - n_known) * static_cast<std::size_t>(tables_.n_twists);
+}
+
+int NodalSystem::n_unknowns() const
+{
+    return static_cast<int>(n_node_numbers()) + (conditions_ != nullptr ? conditions_->n_numbers() : 0);
+}
+
+bool NodalSystem::residual()
+{
+    evaluations_ += layout_.n_nodes();
+    if (conditions_ == nullptr) return rows_.evaluate(layout_, nodes_);
+    if (!conditions_->evaluate(layout_, nodes_)) return false;
+    for (const bool last : {false, true})
+        rows_.end_momentum(last).about_reference = conditions_->momenta(last);
+    if (!rows_.evaluate(layout_, nodes_)) return false;
+    all_rows_ = rows_.reduced();
+    all_rows_.insert(all_rows_.end(), conditions_->missing().begin(), conditions_->missing().end());
+    return true;
+}
+
+void NodalSystem::form_all(Elimination& elimination)
+{
+    elimination.begin(layout_, nodes_);
+    tangent_.form(layout_, nodes_, rows_, elimination);
+    if (conditions_ == nullptr) return;
+    conditions_->differentiate(layout_, nodes_);
+    elimination.close_with(conditions_->closing());
 }
 
 bool NodalSystem::factorise()
 {
     in_use_ = true;
-    elimination_->begin(layout_, nodes_);
-    tangent_.form(layout_, nodes_, rows_, *elimination_);
+    form_all(*elimination_);
     return elimination_->factorise();
+}
+
+void NodalSystem::keep()
+{
+    nodes_.keep();
+    if (conditions_ != nullptr) conditions_->keep();
 }
 
 void NodalSystem::solve(std::span<double> dx)
@@ -86,13 +119,17 @@ void NodalSystem::solve(std::span<double> dx)
         for (int c = 0; c < tables_.rank; ++c) range_[c] = -nodes_.violations(1)[c];
         nodes_.basis(1).q.solve_R_transposed(range_.data());
     }
-    elimination_->solve(rows_.reduced(), pending_ ? range_.data() : nullptr, dx.data());
+    elimination_->solve(conditions_ != nullptr ? all_rows_ : rows_.reduced(),
+                        pending_ ? range_.data() : nullptr, dx.data());
     double* twist = dx.data();
     for (int A = 0; A < layout_.n_nodes(); ++A) {
         if (!layout_.is_unknown(A)) continue;
         tables_.bodies.to_twist(nodes_.maps(A), twist, twist);
         twist += tables_.n_twists;
     }
+    if (conditions_ == nullptr) return;
+    const std::vector<double> along(twist, twist + conditions_->n_border());
+    conditions_->to_momenta(along.data(), twist);
 }
 
 bool NodalSystem::move(std::span<const double> dx, double damping)
@@ -104,6 +141,7 @@ bool NodalSystem::move(std::span<const double> dx, double damping)
         nodes_.move(A, twist, damping);
         twist += tables_.n_twists;
     }
+    if (conditions_ != nullptr) conditions_->move(dx.subspan(n_node_numbers()), damping);
     pending_ = false;
     if (!nodes_.constrain(layout_, in_use_)) return false;
     if (damping == 0)
@@ -167,10 +205,13 @@ double NodalSystem::impulse_of(int e, double& motion) const
 double NodalSystem::size_of(std::span<const double> dx) const
 {
     double size = 0;
-    for (std::size_t i = 0; i < dx.size(); i += static_cast<std::size_t>(tables_.n_twists)) {
-        const double here = nodes_.size_of(dx.data() + i);
+    const auto take = [&size](double here) {
         if (!(here <= size) && !std::isnan(size)) size = here;
-    }
+    };
+    const std::size_t n = n_node_numbers();
+    for (std::size_t i = 0; i < n; i += static_cast<std::size_t>(tables_.n_twists))
+        take(nodes_.size_of(dx.data() + i));
+    if (conditions_ != nullptr) take(conditions_->size_of(dx.subspan(n)));
     return size;
 }
 
@@ -187,9 +228,12 @@ double NodalSystem::scale() const { return std::clamp(motion_, 1e-6, 1.0); }
 /// The sums over k_AB cancel: their rounding is that of their largest term.
 NewtonProblem::Rows NodalSystem::rows() const
 {
-    return {rows_.size(), std::max(impulse_, rows_.terms()),
+    const double terms = std::max(impulse_, rows_.terms());
+    // what conditions miss counts by its share of their scales
+    const double missing = conditions_ != nullptr ? terms * conditions_->largest() : 0;
+    return {std::max(rows_.size(), missing), terms,
             1e-16 * (largest_k() * impulse_ + rows_.terms() + tangent_.load_rounding()),
-            layout_.n_elements() == 1, correction_};
+            layout_.n_elements() == 1 && conditions_ == nullptr, correction_};
 }
 
 /// Each row has the rounding of its own terms: a motion that decays keeps its digits.
@@ -210,6 +254,8 @@ double NodalSystem::uncertainty(std::vector<double>& twists)
             std::max_element(raw, raw + size, [](double a, double b) { return std::abs(a) < std::abs(b); });
         roundings[A] += 1e-16 * std::abs(*largest);
     }
+    if (conditions_ != nullptr)
+        for (const double rounding : conditions_->roundings()) roundings.push_back(rounding);
     const double response = elimination_->least_resisted(roundings, twists);
     double* twist = twists.data();
     for (int A = 0; A < layout_.n_nodes() && !twists.empty(); ++A) {
@@ -230,8 +276,7 @@ void NodalSystem::measure_condition(SolveReport& report, const std::function<boo
     }
     elimination_.reset();
     const std::unique_ptr<Elimination> elimination = on_null_spaces();
-    elimination->begin(layout_, nodes_);
-    form_tangent(*elimination);
+    form_all(*elimination);
     elimination->measure_condition(report, goes_on);
 }
 

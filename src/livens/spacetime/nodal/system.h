@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "livens/solvers/newton.h"
+#include "livens/spacetime/nodal/end_conditions.h"
 #include "livens/spacetime/nodal/nodes.h"
 #include "livens/spacetime/nodal/rows.h"
 #include "livens/spacetime/nodal/tangent.h"
@@ -24,6 +25,8 @@ public:
     /// Makes a stretch current, with the states known at its ends (null: X is unknown there). To be followed
     /// by places for all unknown nodes, and settle().
     void open(const WindowLayout& layout, const InstantState* first, const InstantState* last);
+    /// Conditions by component, for layouts whose momenta at both ends are unknown; must outlive the system.
+    void close_with(EndConditions& conditions) { conditions_ = &conditions; }
     /// Placed nodes may lie far from the constraints: pulls until the bases fit the nodes. False: not finite.
     bool settle();
 
@@ -37,6 +40,8 @@ public:
     const Elimination* elimination() const { return elimination_.get(); }
     /// Forms the tangent at the current point into another sink, for tests.
     void form_tangent(TangentSink& sink) { tangent_.form(layout_, nodes_, rows_, sink); }
+    /// Of the conditions by component, or null.
+    const EndConditions* conditions() const { return conditions_; }
     /// The bases fit the nodes to rounding: nothing was pulled since they were made.
     bool bases_fit() const { return correction_ < 1e-15; }
 
@@ -45,17 +50,13 @@ public:
     double uncertainty(std::vector<double>& twists);
 
     int n_unknowns() const override;
-    bool residual() override
-    {
-        evaluations_ += layout_.n_nodes();
-        return rows_.evaluate(layout_, nodes_);
-    }
+    bool residual() override;
     /// Of the equations at a node, so far.
     long long evaluations() const { return evaluations_; }
     bool factorise() override;
     void solve(std::span<double> dx) override;
     bool move(std::span<const double> dx, double damping) override;
-    void keep() override { nodes_.keep(); }
+    void keep() override;
     double size_of(std::span<const double> dx) const override;
     double scale() const override;
     NewtonProblem::Rows rows() const override;
@@ -64,6 +65,8 @@ public:
 
 private:
     void choose_elimination();
+    void form_all(Elimination& elimination);
+    std::size_t n_node_numbers() const;
     std::unique_ptr<Elimination> on_null_spaces() const;
     bool pull(bool are_placed);
     void measure();
@@ -77,11 +80,13 @@ private:
     NodalRows rows_;
     Tangent tangent_;
     std::unique_ptr<Elimination> elimination_;
-    bool in_use_ = false;     // a tangent is: null spaces vary smoothly
-    bool pending_ = false;    // violations are left to the next linear step
-    double correction_ = 0;   // largest pull of the last move
-    double motion_ = 0;       // largest inside an element, in lengths and radians
-    double impulse_ = 0;      // likewise: mass times motion over h, in scaled rows
+    EndConditions* conditions_ = nullptr;   // by component
+    std::vector<double> all_rows_;          // those of nodes, and of conditions; only with these
+    bool in_use_ = false;                   // a tangent is: null spaces vary smoothly
+    bool pending_ = false;                  // violations are left to the next linear step
+    double correction_ = 0;                 // largest pull of the last move
+    double motion_ = 0;                     // largest inside an element, in lengths and radians
+    double impulse_ = 0;                    // likewise: mass times motion over h, in scaled rows
     long long evaluations_ = 0;
     std::vector<double> range_;   // violations that are left, in the basis
 };

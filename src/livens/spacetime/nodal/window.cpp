@@ -19,12 +19,14 @@ namespace livens {
 
 NodalWindow::NodalWindow(const ModelTables& tables, const TimeMesh& mesh, const Ends& ends,
                          const ElementRule& rule)
-    : Window(static_cast<ElementMonitor&>(*this)), tables_(tables), ends_(ends), system_(tables, rule),
-      series_(tables, system_.rule()), kernel_(tables, system_.rule()),
+    : Window(static_cast<ElementMonitor&>(*this)), tables_(tables), ends_(ends),
+      conditions_(ends.has_components() ? std::make_unique<EndConditions>(tables, ends) : nullptr),
+      system_(tables, rule), series_(tables, system_.rule()), kernel_(tables, system_.rule()),
       end_(tables, kernel_.serves() && ends.has_state()), checks_(tables, system_.rule()),
       record_(tables, mesh, system_.rule())
 {
     record_.note_redundant(ends.redundant);
+    if (conditions_ != nullptr) system_.close_with(*conditions_);
 }
 
 /// The mesh's number of the stretch's element end.
@@ -51,10 +53,12 @@ bool NodalWindow::open(int first, int last, SolveReport& report)
         layout_.X_last = knows_positions(ends_.at_end);
         layout_.P_last = knows_momenta(ends_.at_end);
     }
+    if (ends_.has_components()) layout_.P_first = layout_.P_last = layout_.are_momenta_unknown = true;
     if (!is_ready_ && !begin_front(report)) return false;
     if (layout_.X_last && !set_state(far_, ends_.end, report)) return false;
     layout_.angles = layout_.X_first ? end_.here().angles : tables_.loads.turns.begin();
     system_.open(layout_, layout_.X_first ? &end_.here() : nullptr, layout_.X_last ? &far_ : nullptr);
+    if (ends_.has_components()) return true;   // which momenta, is decided with the nodes
     if (!layout_.X_first && layout_.P_first)
         set_momenta(ends_.start, system_.balances().end_momentum(false).about_reference);
     if (layout_.P_last) set_momenta(ends_.end, system_.balances().end_momentum(true).about_reference);
@@ -165,7 +169,18 @@ bool NodalWindow::start_from(const Guess& guess)
         }
         system_.nodes().place_at(A, X.data());
     }
-    return system_.settle();
+    return system_.settle() && begin_conditions(guess);
+}
+
+/// Momenta at both ends as a guess has them.
+bool NodalWindow::begin_conditions(const Guess& guess)
+{
+    if (conditions_ == nullptr) return true;
+    for (const bool last : {false, true}) {
+        const double t = last ? layout_.times.back() : layout_.times.front();
+        if (!conditions_->begin(last, guess(t))) return false;
+    }
+    return true;
 }
 
 State NodalWindow::at(int element_end) const

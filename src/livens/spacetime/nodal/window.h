@@ -52,6 +52,7 @@ private:
 
     int mesh_end(int end) const;
     void set_momenta(const State& given, std::vector<double>& momenta) const;
+    bool begin_conditions(const Guess& guess);
     bool set_state(InstantState& state, const State& given, SolveReport& report);
     bool begin_front(SolveReport& report);
     void begin_newton();
@@ -65,6 +66,7 @@ private:
 
     const ModelTables& tables_;
     const Ends& ends_;
+    std::unique_ptr<EndConditions> conditions_;   // by component, or null
     NodalSystem system_;
     Series series_;
     MarchKernel kernel_;

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Quantities are what sensors read of coordinates, found by name; bodies have those of a sensor at their
+// reference point, and turns.
+#include "livens/multibody/state_quantities.h"
+
+#include <array>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/multibody/model.h"
+
+namespace livens {
+
+namespace {
+
+constexpr std::array<const char*, 3> axes{"x", "y", "z"};
+
+std::vector<Matrix34> stated_bodies(const Model& model)
+{
+    std::vector<Matrix34> X;
+    for (const Body& body : model.bodies()) X.push_back(body.X);
+    return X;
+}
+
+void take(const Sensor& sensor, std::vector<StateQuantity>& all)
+{
+    for (const SensorComponent& c : sensor.components)
+        if (!c.coordinate.coordinate.forms.empty() && !c.is_acceleration())
+            all.push_back({sensor.name + "." + c.name, c.unit, c.coordinate, c.derivative});
+}
+
+/// The rotation vector from where the model has the body, and the angular velocity, in world axes.
+void take_turns(const Body& body, int b, std::vector<StateQuantity>& all)
+{
+    const TriadPair aligned{identity<3>(), transpose(directors(body.X))};
+    for (int k = 0; k < 3; ++k)
+        all.push_back({body.name + ".rotation_" + axes[k],
+                       "rad",
+                       {std::string("rotation_") + axes[k], rotation_component(world, b, aligned, k)}});
+    for (int k = 0; k < 3; ++k)
+        all.push_back({body.name + ".angular_velocity_" + axes[k], "rad s-1", {}, 0, b, k});
+}
+
+/// All that has this name: joint, sensors, body.
+std::vector<StateQuantity> quantities_of(const Model& model, const std::string& object)
+{
+    std::vector<StateQuantity> all;
+    if (const int j = model.find_joint(object); j >= 0) {
+        const Joint& joint = model.joints()[j];
+        if (!joint.coordinates.empty() || !joint.readings.empty()) take(joint_sensor(object, joint), all);
+    }
+    for (const Sensor& sensor : model.sensors())
+        if (sensor.name == object) take(sensor, all);
+    if (const int b = model.find_body(object); b >= 0) {
+        take(point_sensor(object, b, {}, stated_bodies(model)), all);
+        if (!model.bodies()[b].is_point) take_turns(model.bodies()[b], b, all);
+    }
+    return all;
+}
+
+/// Why nothing of the motion's places and rates has this name, where something else has.
+std::string not_smooth(const Model& model, const std::string& object, const std::string& component)
+{
+    const std::string of_forces = "it follows from forces, which the motion decides";
+    for (const Sensor& sensor : model.sensors())
+        if (sensor.name == object)
+            for (const SensorComponent& c : sensor.components)
+                if (c.name == component)
+                    return c.is_acceleration()
+                               ? "it is an acceleration: " + of_forces
+                               : "a sensor of type " + sensor.type + " reads it: " + of_forces;
+    if (component.ends_with("_acceleration")) return "it is an acceleration: " + of_forces;
+    if (component.starts_with("force") || component.starts_with("torque") || component.starts_with("moment"))
+        return "it is a reaction: " + of_forces;
+    return "";
+}
+
+std::string list_of(const std::vector<StateQuantity>& all)
+{
+    std::string list;
+    for (const StateQuantity& q : all) list += (list.empty() ? "" : ", ") + q.name;
+    return list;
+}
+
+}   // namespace
+
+std::vector<StateQuantity> state_quantities(const Model& model, const std::string& name)
+{
+    const std::size_t dot = name.rfind('.');
+    const std::string object = name.substr(0, dot == std::string::npos ? name.size() : dot),
+                      component = dot == std::string::npos ? "" : name.substr(dot + 1);
+    const std::vector<StateQuantity> all = quantities_of(model, object);
+    std::vector<StateQuantity> found;
+    std::string prefix = component + "_";
+    if (component == "position") prefix = "";
+    if (component == "velocity") prefix = "v";
+    const bool is_vector = component == "position" || component == "velocity" || component == "rotation" ||
+                           component == "angular_velocity";
+    for (const StateQuantity& q : all) {
+        const std::string own = q.name.substr(object.size() + 1);
+        const bool is_part = is_vector && (own == prefix + "x" || own == prefix + "y" || own == prefix + "z");
+        if (own == component || is_part) found.push_back(q);
+    }
+    if (found.size() == 1 || (is_vector && found.size() == 3)) return found;
+    if (found.size() > 1)
+        throw InputError({"quantity-unknown", name, "more than one object has a quantity '" + name + "'", "",
+                          "", "", "give the sensor, joint or body a name of its own"});
+    if (const std::string why = not_smooth(model, object, component); !why.empty())
+        throw InputError({"quantity-not-smooth", name, "'" + name + "' cannot be stated at an end of time",
+                          "", "places, angles and their rates", why,
+                          all.empty() ? "" : "there are " + list_of(all)});
+    throw InputError(
+        {"quantity-unknown", name, "there is no quantity '" + name + "'", "", "",
+         all.empty() ? "no joint with coordinates, sensor or body has the name '" + object + "'" : "",
+         all.empty() ? "name them as \"pivot.angle\", \"tip.x\" or \"ball.vx\""
+                     : "there are " + list_of(all)});
+}
+
+double value_of(const StateQuantity& quantity, std::span<const Matrix34> stated, std::span<const Matrix34> X,
+                std::span<const Matrix34> V)
+{
+    if (quantity.body >= 0) {
+        const auto b = static_cast<std::size_t>(quantity.body);
+        return angular_velocity(X[b], V[b])[quantity.axis];
+    }
+    const JointCoordinate& q = quantity.coordinate.coordinate;
+    return quantity.derivative == 1 ? coordinate_rate(q, X, V)
+                                    : quantity.coordinate.at_stated + coordinate_change(q, stated, X);
+}
+
+}   // namespace livens

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Numbers of a state by name: what conditions at the ends of time are stated of.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "livens/multibody/sensors.h"
+
+namespace [[gnu::visibility("default")]] livens {
+
+class Model;
+
+/// A smooth function of X and V: a coordinate or its rate, or a component of a body's angular velocity.
+struct StateQuantity {
+    std::string name;               ///< "pivot.angle_rate"
+    std::string unit;               ///< "rad s-1", as sensors have it
+    NamedCoordinate coordinate{};   ///< no forms: none
+    int derivative = 0;             ///< by time, of the coordinate: 0 or 1
+    int body = -1;                  ///< whose angular velocity it is, or -1
+    int axis = 0;                   ///< of the world, likewise
+
+    bool is_rate() const { return derivative == 1 || body >= 0; }
+    bool is_angle() const { return body >= 0 || coordinate.coordinate.is_angle(); }
+    bool counts_turns() const { return !is_rate() && coordinate.coordinate.counts_turns(); }
+};
+
+/// "object.component": the object is a joint, a sensor or a body. Joints have their coordinates and rates,
+/// sensors what they read of coordinates, bodies x, y, z of their reference point and vx, vy, vz;
+/// rotation_x, rotation_y, rotation_z, the rotation vector from where the model has the body;
+/// angular_velocity_x and so on, all in world axes. "position", "velocity", "rotation" and "angular_velocity"
+/// of a body are three at once. Throws InputError: `quantity-unknown`, and `quantity-not-smooth` for what is
+/// no function of X and V.
+std::vector<StateQuantity> state_quantities(const Model& model, const std::string& name);
+
+/// In a state; `stated`: the bodies as the model has them, from which coordinates are counted. Angles are
+/// within half a turn of what they are there.
+double value_of(const StateQuantity& quantity, std::span<const Matrix34> stated, std::span<const Matrix34> X,
+                std::span<const Matrix34> V);
+
+}   // namespace gnu::visibility("default")]]livens

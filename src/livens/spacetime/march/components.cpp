@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Counting and rank of conditions by component: theory.md, "Conditions by component".
+#include "livens/spacetime/march/components.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <utility>
+
+#include "livens/base/text.h"
+#include "livens/solvers/dense.h"
+#include "livens/spacetime/march/end_point.h"
+
+namespace livens::inline spacetime_internal {
+
+namespace {
+
+constexpr double dependent = 1e-7;   // of a row, where others are taken off it
+constexpr double far_enough = 0.3;   // lengths and radians, from the guesses to places where rank is judged
+constexpr int n_places = 3;
+
+/// Numbers between -1 and 1 that nobody chose, always the same.
+class Scatter {
+public:
+    double next()
+    {
+        state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
+        return static_cast<double>(static_cast<std::int64_t>(state_ >> 11)) / 4503599627370496.0 - 1;
+    }
+
+private:
+    std::uint64_t state_ = 0x9E3779B97F4A7C15ULL;
+};
+
+/// A place about another, with momenta that nobody chose; as far off as it closes.
+void place_about(const EndPoint& from, const ModelTables& tables, double rate, Scatter& scatter, EndPoint& to)
+{
+    const int f = tables.freedoms(), n = tables.n_twists;
+    std::vector<double> y(static_cast<std::size_t>(n), 0.0), p(y), along(y);
+    for (int j = 0; j < f; ++j) {
+        const double size = from.size_along(from.basis(), from.maps(), j);
+        y[tables.rank + j] = far_enough * scatter.next() / size;
+        from.momenta_along(from.basis(), from.maps(), j, along.data());
+        const double share = rate * scatter.next() / size;
+        for (int i = 0; i < n; ++i) p[i] += share * along[i];
+    }
+    from.basis().q.apply(y.data());
+    for (int halvings = 0; halvings < 12 && !to.place_moved(from, y.data(), p); ++halvings)
+        for (double& value : y) value *= 0.5;
+}
+
+/// Derivatives of conditions by lengths, radians and rates times the duration along free motions at both
+/// ends, one row each, by their scales: numbers about 1, zero where joints hold a quantity.
+DenseMatrix rows_at(const ModelTables& tables, const std::vector<Condition>& conditions,
+                    const std::array<const EndPoint*, 2>& points, double duration)
+{
+    const int f = tables.freedoms(), m = static_cast<int>(conditions.size());
+    DenseMatrix rows(m, 4 * f);
+    const std::vector<const StateQuantity*> quantities = quantities_of(conditions);
+    for (const int end : {0, 1}) {
+        const EndPoint& point = *points[end];
+        const DenseMatrix D = point.derivatives(quantities, point.basis(), 1 / duration);
+        for (int i = 0; i < m; ++i) {
+            const Condition& one = conditions[i];
+            if (one.at == (end == 0 ? Condition::At::end : Condition::At::start)) continue;
+            double unit = one.quantity.is_angle() ? 1 : tables.length;
+            if (one.quantity.is_rate()) unit /= duration;
+            for (int j = 0; j < f; ++j) {
+                const double size = point.size_along(point.basis(), point.maps(), j) * unit;
+                rows(i, end * 2 * f + j) = D(i, j) / size;
+                rows(i, end * 2 * f + f + j) = D(i, f + j) / (size * duration);
+            }
+        }
+    }
+    return rows;
+}
+
+/// What is left of a row when those before it are taken off, and by how much each was there.
+struct Remainder {
+    double norm = 0, of = 0;        ///< what is left, and the row's own
+    std::vector<double> shares{};   ///< of rows before, in norms of the row
+};
+
+std::vector<Remainder> remainders(const DenseMatrix& rows)
+{
+    std::vector<Remainder> all;
+    std::vector<std::vector<double>> basis;     // orthonormal, empty where a row was dependent
+    std::vector<std::vector<double>> made_of;   // of rows
+    for (int i = 0; i < rows.rows; ++i) {
+        std::vector<double> r(static_cast<std::size_t>(rows.cols));
+        for (int j = 0; j < rows.cols; ++j) r[j] = rows(i, j);
+        Remainder found{0, norm(r), std::vector<double>(static_cast<std::size_t>(i), 0.0)};
+        std::vector<double> own(static_cast<std::size_t>(rows.rows), 0.0);
+        own[i] = 1;
+        for (int round = 0; round < 2; ++round)
+            for (std::size_t k = 0; k < basis.size(); ++k) {
+                if (basis[k].empty()) continue;
+                const double share = dot(r, basis[k]);
+                add_scaled(r, -share, basis[k]);
+                add_scaled(own, -share, made_of[k]);
+            }
+        found.norm = norm(r);
+        for (int k = 0; k < i; ++k) found.shares[k] = std::abs(own[k]);
+        const bool is_new = found.norm > dependent * std::max(found.of, 1e-3);
+        for (double& value : r) value /= is_new ? found.norm : 1;
+        for (double& value : own) value /= is_new ? found.norm : 1;
+        basis.push_back(is_new ? std::move(r) : std::vector<double>{});
+        made_of.push_back(std::move(own));
+        all.push_back(std::move(found));
+    }
+    return all;
+}
+
+std::string path_of(const Condition& condition)
+{
+    return std::string(condition.at == Condition::At::end ? "end" : "start") + ".known[" +
+           condition.quantity.name + "]";
+}
+
+/// Judges conditions at a few places; what is dependent at all of them is so by itself.
+class Judgement {
+public:
+    Judgement(const ModelTables& tables, const Ends& ends)
+        : tables_(tables), ends_(ends), duration_(ends.end.t - ends.start.t), start_(tables), end_(tables)
+    {
+        are_placed_ = start_.place(ends.start) && end_.place(ends.end);
+        Scatter scatter;
+        for (int i = 0; are_placed_ && i < n_places; ++i)
+            for (auto* at : {&starts_, &ends_about_}) {
+                at->emplace_back(tables);
+                place_about(at == &starts_ ? start_ : end_, tables, 1 / duration_, scatter, at->back());
+            }
+    }
+
+    std::optional<Complaint> complaint() const
+    {
+        const int needed = 2 * tables_.freedoms(), n = static_cast<int>(ends_.components.size());
+        if (!are_placed_) return {};
+        if (std::optional<Complaint> why = why_dependent()) return why;
+        if (n > needed) return too_many(needed, n);
+        if (n < needed) return too_few(needed, n);
+        return {};
+    }
+
+private:
+    /// Of each condition the remainder at the place where it depends least on those before.
+    std::vector<Remainder> least_dependent(const std::vector<Condition>& conditions) const
+    {
+        std::vector<Remainder> best;
+        for (int place = 0; place < n_places; ++place) {
+            const std::vector<Remainder> here =
+                remainders(rows_at(tables_, conditions, {&starts_[place], &ends_about_[place]}, duration_));
+            if (best.empty()) best = here;
+            for (std::size_t i = 0; i < here.size(); ++i)
+                if (here[i].norm > best[i].norm) best[i] = here[i];
+        }
+        return best;
+    }
+
+    static bool is_dependent(const Remainder& row)
+    {
+        return !(row.norm > dependent * std::max(row.of, 1e-3));
+    }
+
+    std::optional<Complaint> why_dependent() const
+    {
+        const std::vector<Condition>& conditions = ends_.components;
+        const std::vector<Remainder> rows = least_dependent(conditions);
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            if (!is_dependent(rows[i])) continue;
+            const Condition& one = conditions[i];
+            if (rows[i].of < dependent) return of_joints(one);
+            std::string others;
+            for (std::size_t k = 0; k < i; ++k) {
+                if (rows[i].shares[k] * 1e6 < 1) continue;
+                if (conditions[k].quantity.name == one.quantity.name && conditions[k].at == one.at)
+                    return Complaint{
+                        "conditions-twice", path_of(one), in_words(one) + " is given twice", "", "", "",
+                        "give it once"};
+                others += (others.empty() ? "" : ", ") + in_words(conditions[k]);
+            }
+            return Complaint{"conditions-dependent",
+                             path_of(one),
+                             in_words(one) + " says nothing that other conditions do not say",
+                             "",
+                             "",
+                             "the joints make it a function of " + others,
+                             "leave it out, or give another quantity instead"};
+        }
+        return {};
+    }
+
+    /// A quantity that no free motion changes.
+    Complaint of_joints(const Condition& one) const
+    {
+        const EndPoint& point = one.at == Condition::At::end ? end_ : start_;
+        double held = point.value(one.quantity);
+        if (one.quantity.counts_turns()) held = turned_to(held, one.value);
+        if (one.at == Condition::At::both) held = 0;
+        const bool is_met =
+            std::abs(held - one.value) <= met_component * scale_of(one, tables_.length, duration_);
+        if (is_met)
+            return {"conditions-joints",
+                    path_of(one),
+                    "the joints hold " + in_words(one) + ", so that it is no condition on the motion",
+                    to_text(one.value, 6) + " " + one.quantity.unit,
+                    "",
+                    "",
+                    "leave it out"};
+        return {"conditions-joints",
+                path_of(one),
+                in_words(one) + " contradicts the joints",
+                to_text(one.value, 6) + " " + one.quantity.unit,
+                to_text(held, 6) + " " + one.quantity.unit,
+                "the joints hold it, and no motion changes it",
+                "leave it out, or change the mechanism"};
+    }
+
+    Complaint too_many(int needed, int n) const
+    {
+        return {"conditions-too-many",
+                path_of(ends_.components.back()),
+                "too many conditions at the ends of time",
+                std::to_string(n),
+                std::to_string(needed),
+                "the joints leave " + std::to_string(needed / 2) +
+                    " motions free, and each has a place and a rate to be known",
+                "leave out " + std::to_string(n - needed) + " of them"};
+    }
+
+    Complaint too_few(int needed, int n) const
+    {
+        const std::string free = free_in_words(needed - n);
+        return {"conditions-too-few",
+                "start.known",
+                "too few conditions at the ends of time",
+                std::to_string(n),
+                std::to_string(needed),
+                "the joints leave " + std::to_string(needed / 2) +
+                    " motions free, and each has a place and a rate to be known",
+                free.empty() ? "give more quantities" : "give for instance " + free};
+    }
+
+    /// Quantities that the conditions leave free, so many of them: of joints, else of bodies, at the end
+    /// that has fewer conditions.
+    std::string free_in_words(int n) const
+    {
+        std::vector<Condition> all = ends_.components;
+        const std::size_t n_stated = all.size();
+        const auto at_end = std::ranges::count(all, Condition::At::end, &Condition::at);
+        const Condition::At at =
+            2 * at_end < static_cast<std::ptrdiff_t>(n_stated) ? Condition::At::end : Condition::At::start;
+        for (const StateQuantity& q : candidates()) all.push_back({q, 0, at});
+        std::string list;
+        const std::vector<Remainder> rows = least_dependent(all);
+        for (std::size_t i = n_stated; i < all.size() && n > 0; ++i) {
+            if (is_dependent(rows[i])) continue;
+            list += (list.empty() ? "" : ", ") + in_words(all[i]);
+            --n;
+        }
+        return list;
+    }
+
+    std::vector<StateQuantity> candidates() const
+    {
+        const Model& model = *tables_.model;
+        std::vector<StateQuantity> all;
+        for (const int derivative : {0, 1})
+            for (const Joint& joint : model.joints())
+                for (const NamedCoordinate& q : joint.coordinates)
+                    all.push_back(
+                        {joint.name + "." + q.name + (derivative == 1 ? "_rate" : ""), "", q, derivative});
+        for (const Body& body : model.bodies())
+            for (const char* what : {"position", "rotation", "velocity", "angular_velocity"}) {
+                if (body.is_rotor || (body.is_point && (what[0] == 'r' || what[0] == 'a'))) continue;
+                const std::vector<StateQuantity> three = state_quantities(model, body.name + "." + what);
+                all.insert(all.end(), three.begin(), three.end());
+            }
+        return all;
+    }
+
+    const ModelTables& tables_;
+    const Ends& ends_;
+    double duration_;
+    EndPoint start_, end_;
+    bool are_placed_ = false;
+    std::deque<EndPoint> starts_, ends_about_;
+};
+
+}   // namespace
+
+std::optional<Complaint> why_undetermined(const ModelTables& tables, const Ends& ends)
+{
+    return Judgement(tables, ends).complaint();
+}
+
+}   // namespace livens::inline spacetime_internal

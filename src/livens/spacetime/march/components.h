@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Conditions by component before they are solved for: whether they are as many as they must be and do not say
+// one thing twice, and states that meet what is stated at one end.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "livens/dynamics/rows/tables.h"
+#include "livens/spacetime/march/ends.h"
+
+namespace livens::inline spacetime_internal {
+
+/// Of the scale of a condition: what counts as met.
+constexpr double met_component = 1e-8;
+
+/// "'tip.x' at the end".
+std::string in_words(const Condition& condition);
+
+std::vector<const StateQuantity*> quantities_of(const std::vector<Condition>& conditions);
+
+/// What one unit of a condition is, for comparisons: its value, and at least a length of the model or a
+/// radian, for rates over the duration.
+double scale_of(const Condition& condition, double length, double duration);
+
+/// Where turns of an angle begin to be counted: at what is stated at the start, or at the stated bodies.
+double start_of_turns(const Ends& ends, const StateQuantity& quantity);
+
+/// Why conditions do not determine a motion of these joints: they must be twice the free motions, and none
+/// may follow from others. Judged at places about the guesses, where no chance makes them dependent.
+std::optional<Complaint> why_undetermined(const ModelTables& tables, const Ends& ends);
+
+/// A state near a guess that meets what is stated at an end, as far as it comes.
+State settled(const ModelTables& tables, const Ends& ends, Condition::At at, const State& guess);
+
+/// What quantities of conditions are in a motion, at its ends; angles with their turns.
+std::vector<double> values_in(const Model& model, const Ends& ends,
+                              const std::function<State(double t)>& motion,
+                              const std::vector<double>& instants);
+
+/// A sentence for each condition that a motion does not meet, to 1e-8 of scale_of().
+std::vector<std::string> unmet_components(const Model& model, const Ends& ends, const Motion& motion);
+
+}   // namespace livens::inline spacetime_internal

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// theory.md, "Conditions by component".
+#include "livens/spacetime/nodal/end_conditions.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "livens/spacetime/march/components.h"
+#include "livens/spacetime/nodal/nodes.h"
+
+namespace livens::inline spacetime_internal {
+
+EndConditions::EndConditions(const ModelTables& tables, const Ends& ends)
+    : tables_(tables), ends_(ends), points_{EndPoint(tables), EndPoint(tables)},
+      missing_(ends.components.size())
+{
+    for (const Condition& condition : ends.components) quantities_.push_back(&condition.quantity);
+    for (const Body& body : tables.model->bodies()) stated_.push_back(body.X);
+    for (auto* p : {&current_, &kept_})
+        for (std::vector<double>& one : *p) one.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
+}
+
+bool EndConditions::begin(bool last, const State& guess)
+{
+    EndPoint& point = points_[last ? 1 : 0];
+    if (!point.place(guess)) return false;
+    kept_[last ? 1 : 0] = current_[last ? 1 : 0] = point.momenta();
+    return true;
+}
+
+void EndConditions::move(std::span<const double> dp, double damping)
+{
+    const auto n = static_cast<std::size_t>(tables_.n_twists);
+    for (std::size_t end = 0; end < 2; ++end)
+        for (std::size_t i = 0; i < n; ++i) current_[end][i] = kept_[end][i] + damping * dp[end * n + i];
+}
+
+bool EndConditions::evaluate(const WindowLayout& layout, const Nodes& nodes)
+{
+    const int last = layout.n_nodes() - 1, n = layout.n_elements();
+    lengths_ = {std::abs(layout.h(0)), std::abs(layout.h(n - 1))};
+    duration_ = std::abs(layout.times[n] - layout.times[0]);
+    for (const int end : {0, 1}) {
+        const int A = end == 0 ? 0 : last;
+        if (!points_[end].place(layout.times[end == 0 ? 0 : n], nodes.X(A), nodes.low(A), current_[end]))
+            return false;
+        current_[end] = points_[end].momenta();
+    }
+    largest_ = 0;
+    for (std::size_t i = 0; i < missing_.size(); ++i) {
+        const Condition& condition = ends_.components[i];
+        const StateQuantity& q = condition.quantity;
+        const bool at_start = condition.at == Condition::At::start;
+        double found = points_[at_start ? 0 : 1].value(q);
+        if (q.counts_turns() && !at_start) found = angle_at_end(q, layout, nodes);
+        if (q.counts_turns() && at_start) found = turned_to(found, ends_.value(i));
+        if (condition.at == Condition::At::both) {
+            const double first = points_[0].value(q);
+            found -= q.counts_turns() ? turned_to(first, start_of_turns(ends_, q)) : first;
+        }
+        missing_[i] = ends_.value(i) - found;
+        largest_ = std::max(largest_, std::abs(missing_[i]) / scale(i));
+    }
+    return all_finite(missing_) && points_[0].are_known(quantities_) && points_[1].are_known(quantities_);
+}
+
+/// Followed from node to node, from the turn that it has at the start.
+double EndConditions::angle_at_end(const StateQuantity& quantity, const WindowLayout& layout,
+                                   const Nodes& nodes) const
+{
+    const NamedCoordinate& q = quantity.coordinate;
+    double now = start_of_turns(ends_, quantity) - q.at_stated;
+    for (int A = 0; A < layout.n_nodes(); ++A) {
+        std::vector<Matrix34> X(stated_.size());
+        for (std::size_t b = 0; b < X.size(); ++b) std::copy_n(nodes.X(A) + 12 * b, 12, X[b].a);
+        now = turned_to(coordinate_change(q.coordinate, stated_, X), now);
+    }
+    return q.at_stated + now;
+}
+
+double EndConditions::scale(std::size_t i) const
+{
+    return scale_of(ends_.components[i], tables_.length, duration_);
+}
+
+std::vector<double> EndConditions::roundings() const
+{
+    std::vector<double> all;
+    for (std::size_t i = 0; i < missing_.size(); ++i) all.push_back(1e-16 * scale(i));
+    return all;
+}
+
+void EndConditions::differentiate(const WindowLayout& layout, const Nodes& nodes)
+{
+    const int f = tables_.freedoms(), m = static_cast<int>(missing_.size());
+    closing_.assign(static_cast<std::size_t>(m) * 4 * static_cast<std::size_t>(f), 0.0);
+    for (const int end : {0, 1}) {
+        const ConstraintBasis& basis = nodes.basis(end == 0 ? 0 : layout.n_nodes() - 1);
+        const DenseMatrix D = points_[end].derivatives(quantities_, basis, 1 / duration_);
+        for (int i = 0; i < m; ++i) {
+            const Condition::At at = ends_.components[i].at;
+            if (at == (end == 0 ? Condition::At::end : Condition::At::start)) continue;
+            const double sign = at == Condition::At::both && end == 0 ? -1 : 1;
+            double* row = closing_.data() + static_cast<std::ptrdiff_t>(i) * 4 * f;
+            for (int j = 0; j < f; ++j) {
+                row[end * f + j] = sign * D(i, j);
+                row[(2 + end) * f + j] = sign * D(i, f + j);
+            }
+        }
+        along_[end] = DenseMatrix(tables_.n_twists, f);
+        for (int j = 0; j < f; ++j)
+            points_[end].momenta_along(basis, points_[end].maps(), j, along_[end].column(j).data());
+    }
+}
+
+void EndConditions::to_momenta(const double* along, double* dp) const
+{
+    const auto f = static_cast<std::size_t>(tables_.freedoms()),
+               n = static_cast<std::size_t>(tables_.n_twists);
+    for (std::size_t end = 0; end < 2; ++end) {
+        const std::vector<double> one = product(along_[end], {along + end * f, f});
+        std::copy(one.begin(), one.end(), dp + end * n);
+    }
+}
+
+double EndConditions::size_of(std::span<const double> dp) const
+{
+    const auto n = static_cast<std::size_t>(tables_.n_twists);
+    double size = 0;
+    std::vector<double> p(n);
+    for (std::size_t end = 0; end < 2; ++end) {
+        std::copy_n(dp.begin() + static_cast<std::ptrdiff_t>(end * n), n, p.begin());
+        const double here = lengths_[end] * points_[end].size_of_momenta(p);
+        if (!(here <= size) && !std::isnan(size)) size = here;
+    }
+    return size;
+}
+
+}   // namespace livens::inline spacetime_internal

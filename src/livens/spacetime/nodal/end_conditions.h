@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Conditions by component: the momenta at both ends of a window as unknowns, and the rows that decide them.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "livens/spacetime/elements/window_layout.h"
+#include "livens/spacetime/march/end_point.h"
+#include "livens/spacetime/march/ends.h"
+
+namespace livens::inline spacetime_internal {
+
+class Nodes;
+
+/// Border and closing rows of a window (docs/theory.md, "Conditions by component"). Unknowns are momenta
+/// along the free motions at the first node and at the last one, f each; rows what conditions miss.
+class EndConditions {
+public:
+    /// References must outlive it.
+    EndConditions(const ModelTables& tables, const Ends& ends);
+
+    int n_border() const { return 2 * tables_.freedoms(); }
+    /// Of an increment as Newton's iteration sees it: momenta in world axes at both ends.
+    int n_numbers() const { return 2 * tables_.n_twists; }
+    /// In world axes, about reference points; after evaluate() what joints allow.
+    const std::vector<double>& momenta(bool last) const { return current_[last ? 1 : 0]; }
+
+    /// The momenta of a guess, whose places serve until nodes are there.
+    bool begin(bool last, const State& guess);
+    void move(std::span<const double> dp, double damping);
+    void keep() { kept_ = current_; }
+    /// States at both ends, and what conditions miss. False: something is not finite, or without a value.
+    bool evaluate(const WindowLayout& layout, const Nodes& nodes);
+    /// What they miss with the opposite sign, and the largest of it by its scale.
+    const std::vector<double>& missing() const { return missing_; }
+    double largest() const { return largest_; }
+    /// Of the rows that rounding may make.
+    std::vector<double> roundings() const;
+
+    /// Closing rows at the current point: unknowns of the first node, of the last, momenta.
+    void differentiate(const WindowLayout& layout, const Nodes& nodes);
+    std::span<const double> closing() const { return closing_; }
+    /// Increments of momenta from those along the free motions where closing rows were made.
+    void to_momenta(const double* along, double* dp) const;
+    /// What moves by them in an element at the end, in lengths and radians.
+    double size_of(std::span<const double> dp) const;
+
+private:
+    double angle_at_end(const StateQuantity& quantity, const WindowLayout& layout, const Nodes& nodes) const;
+    double scale(std::size_t i) const;
+
+    const ModelTables& tables_;
+    const Ends& ends_;
+    std::vector<const StateQuantity*> quantities_;
+    std::vector<Matrix34> stated_;
+    std::array<EndPoint, 2> points_;
+    std::array<std::vector<double>, 2> current_, kept_;
+    std::array<double, 2> lengths_{};   // of the elements at the ends, s
+    double duration_ = 0;
+    std::vector<double> missing_, closing_;
+    std::array<DenseMatrix, 2> along_;   // momenta along free motions
+    double largest_ = 0;
+};
+
+}   // namespace livens::inline spacetime_internal
