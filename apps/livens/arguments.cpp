@@ -159,6 +159,9 @@ void add_solve_command(CLI::App& app, Arguments& a)
              "current folder")
         ->type_name("RUN.nc");
     add_file(solve, "--csv", given->csv, "also write samples as CSV")->type_name("FILE.csv");
+    add_file(solve, "--guess", given->guess,
+             "run to begin with, where conditions at both ends are given: a motion of the same bodies")
+        ->type_name("RUN.nc");
     add_force(solve, given->force);
     solve
         .add_option("-j,--jobs", given->jobs,

@@ -16,6 +16,7 @@
 #include "failure.h"
 #include "interrupt.h"
 #include "livens/base/version.h"
+#include "livens/io/guess.h"
 #include "livens/io/results.h"
 #include "livens/io/solve_scenario.h"
 #include "livens/spacetime/ensemble.h"
@@ -105,8 +106,9 @@ struct Job {
     Scenario scenario;
     Places places;
     std::vector<Diagnostic> warnings{};
-    bool is_alone = true;   // on the main thread, which may speak at once
-    bool force = false;     // what stands in the way is replaced
+    std::shared_ptr<const Run> guess{};   // null: none
+    bool is_alone = true;                 // on the main thread, which may speak at once
+    bool force = false;                   // what stands in the way is replaced
     std::exception_ptr failure{};
     std::vector<std::string> details{}, complaints{};
     std::string text{}, error{};   // on standard output, and standard error
@@ -132,7 +134,9 @@ Solved solve_job(Job& job, double share, ProgressLine& line)
         line.show(progress);
         return InterruptWatch::signal() == 0;
     };
-    SolvedScenario motion = solve_scenario(scenario, options, scenario.prepared);
+    SolvedScenario motion =
+        solve_scenario(scenario, options, scenario.prepared,
+                       job.guess ? guess_of(scenario, *job.guess) : std::function<State(double)>{});
     if (motion.solution.motion.mesh.ends.empty())   // nothing may replace an older result
         throw failure(exit_signal + InterruptWatch::signal(), motion.solution.report.message);
     Solved solved;
@@ -259,16 +263,26 @@ std::string summary_of(const Solved& solved, const Places& p, bool verbose)
     return summary.text();
 }
 
+/// What a guess is wrong in is told before anything is solved; a run that fails must not replace it.
+void check_guess(const Scenario& scenario, const Run& guess, const Places& p, const SolveArguments& arguments)
+{
+    check_differs(p.output, arguments.guess, "it is the guess of the motion");
+    guess_of(scenario, guess);   // throws
+}
+
 /// All of them are read, and all places looked at, before the first is solved.
 std::vector<Job> read_jobs(const SolveArguments& arguments, const Common& common)
 {
     if (arguments.scenarios.size() > 1) check_several(arguments);
     std::vector<Job> jobs;
+    const auto guess =
+        arguments.guess.empty() ? nullptr : std::make_shared<const Run>(read_run(arguments.guess));
     for (const std::string& file : arguments.scenarios) {
         const Clock::time_point begin = Clock::now();
         std::vector<Diagnostic> warnings;
         Scenario scenario = load_scenario(file, common, &warnings);
         Places p = places(scenario, arguments);
+        if (guess) check_guess(scenario, *guess, p, arguments);
         say_detail(fmt::format("read and checked the scenario in {:.3g} s", seconds_since(begin)));
         for (const Job& job : jobs) {
             check_inputs(p.output, job.scenario);
@@ -279,7 +293,7 @@ std::vector<Job> read_jobs(const SolveArguments& arguments, const Common& common
                                               plain(p.output.string()) +
                                               "'; solve them one by one, with '--output'");
         }
-        jobs.push_back({std::move(scenario), std::move(p), std::move(warnings),
+        jobs.push_back({std::move(scenario), std::move(p), std::move(warnings), guess,
                         arguments.scenarios.size() == 1, arguments.force});
     }
     return jobs;

@@ -40,8 +40,8 @@ _SPINS = ("angular_velocity", "angular_velocity_body")
 
 def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, elements: int | None = None,
           output: Number | Vector | None = None, breaks: Literal["from_loads", "ignore"] | None = None,
-          method: Method | str | None = None, start: End = None, end: End = None, progress: ProgressArgument = False,
-          strict: bool = False, **options: Unpack[MethodOptions]) -> Solution:
+          method: Method | str | None = None, start: End = None, end: End = None, guess: Solution | None = None,
+          progress: ProgressArgument = False, strict: bool = False, **options: Unpack[MethodOptions]) -> Solution:
     """Solves the motion of a model.
 
     Arguments that are not given follow from the model's tables ``[time]``, ``[method]``, ``[start]``, ``[end]``, or
@@ -58,6 +58,7 @@ def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, el
         method: ``lv.Lobatto(7)``, ``lv.Radau()``, ``lv.Mixed(..)``, .., or a word: ``"radau"``.
         start: What is prescribed at the initial time, by default the state: a word, or ``lv.positions({..})``, ..
         end: What is prescribed at the final time, by default nothing. Two halves must be prescribed in all.
+        guess: A motion of the same bodies to begin with, where ``start`` and ``end`` prescribe one half each.
         progress: True for a progress line, or a function.
         strict: Whether to raise :class:`SolveError` with the solution so far instead of issuing a warning.
         **options: Options of all methods: ``tolerance``, ``max_iterations``, ``estimate``, ``growth``,
@@ -82,12 +83,15 @@ def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, el
     """
     if not isinstance(model, Model):
         raise TypeError(f"solve() takes a livens.Model first, not {type(model).__name__}")
+    if not (guess is None or isinstance(guess, Solution)):
+        raise TypeError(f"a guess is a livens.Solution, not {type(guess).__name__}; lv.load_solution() reads one from a file")
     overrides = _overrides(model, time, dict(accuracy=accuracy, elements=elements, output=output, breaks=breaks),
                            method, options, start, end)
     scenario = model._scenario(overrides)
     shown = _Progress(progress)
     try:
-        result = _core.solve(scenario, shown.function, _most_bytes(int(clock.monotonic())))
+        result = _core.solve(scenario, shown.function, _most_bytes(int(clock.monotonic())),
+                             None if guess is None else guess._result)
     finally:
         shown.end()
     solution = Solution(result, bool(model._functions))
@@ -297,7 +301,8 @@ def _method(model: Model, method: Method | str | None, options: Mapping[str, Any
     for name, value in options.items():
         if name not in known or name == "family":
             names = [n for n in known if n != "family"]
-            of_solve = ["time", "accuracy", "elements", "output", "breaks", "method", "start", "end", "progress", "strict"]
+            of_solve = ["time", "accuracy", "elements", "output", "breaks", "method", "start", "end", "guess", "progress",
+                        "strict"]
             raise fault("unknown-key", f"solve() has no keyword '{name}'", name,
                         of_keyword(name) or _core.suggestion(name, names + of_solve)
                         if name not in ("degree", "window", "basis") else f"write method=lv.Lobatto({name}=..)")

@@ -15,6 +15,7 @@
 #include <nanobind/stl/string.h>
 
 #include "livens/dynamics/start/prepared.h"
+#include "livens/io/guess.h"
 #include "livens/io/scenario/text/tree.h"
 #include "livens/io/solve_scenario.h"
 #include "livens/solvers/patience.h"
@@ -154,13 +155,16 @@ struct Unjudged {
     SolvedScenario solved;
 };
 
-Unjudged solved(const Shared& scenario, const ProgressCallback& progress, double most_bytes)
+Unjudged solved(const Shared& scenario, const ProgressCallback& progress, double most_bytes,
+                const Run* guess = nullptr)
 {
     SolveOptions options = scenario->options;
     options.progress = progress;
     options.most_bytes = std::min(options.most_bytes, most_bytes);
     // of its own: threads may solve one scenario at the same time
-    return {scenario, solve_scenario(*scenario, std::move(options), std::make_shared<Prepared>())};
+    return {scenario,
+            solve_scenario(*scenario, std::move(options), std::make_shared<Prepared>(),
+                           guess != nullptr ? guess_of(*scenario, *guess) : std::function<State(double)>{})};
 }
 
 /// What `livens solve` does between solving and writing. Once `goes_on` says no it is given up at once,
@@ -182,14 +186,15 @@ void wait_for_the_rest()
     while (n_left > 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
 
-Result solve_one(const Shared& scenario, nb::object progress, double most_bytes)
+Result solve_one(const Shared& scenario, nb::object progress, double most_bytes, const Result* guess)
 {
     Watch watch(std::move(progress));
     std::optional<Result> result;
     {
         const nb::gil_scoped_release unlock;
         Unjudged motion = solved(
-            scenario, [&](const Progress& p) { return watch.goes_on(p); }, most_bytes);
+            scenario, [&](const Progress& p) { return watch.goes_on(p); }, most_bytes,
+            guess != nullptr ? &guess->run : nullptr);
         const auto no_signal = [next = Clock::now(), is_wanted = true]() mutable {
             if (!is_wanted || Clock::now() < next) return is_wanted;
             next = Clock::now() + std::chrono::milliseconds(50);
@@ -256,8 +261,7 @@ nb::list solve_many(const nb::list& trees, int n_threads, nb::object progress, d
         TreeReader reader;
         Node tree = reader.read(nb::cast<nb::dict>(triple[0]));
         variants.push_back({std::move(tree), nb::cast<std::string>(triple[1]),
-                            meshes_in(nb::cast<std::string>(triple[2]), reader.named()),
-                            reader.locations()});
+                            meshes_in(nb::cast<std::string>(triple[2]), reader.named()), reader.locations()});
     }
     const int n = static_cast<int>(variants.size()),
               threads = std::min(threads_for(n_threads), std::max(n, 1));
@@ -306,7 +310,8 @@ void add_solving(nb::module_& m)
     m.def("build_text", &build_text, nb::arg("text"), nb::arg("file"), nb::arg("folder"));
     m.def("build_tree", &build_tree, nb::arg("root"), nb::arg("text"), nb::arg("folder"),
           nb::arg("model_alone") = false);
-    m.def("solve", &solve_one, nb::arg("scenario"), nb::arg("progress").none(), nb::arg("most_bytes"));
+    m.def("solve", &solve_one, nb::arg("scenario"), nb::arg("progress").none(), nb::arg("most_bytes"),
+          nb::arg("guess").none() = nb::none());
     nb::module_::import_("atexit").attr("register")(nb::cpp_function(&wait_for_the_rest));
     m.def("solve_many", &solve_many, nb::arg("trees"), nb::arg("n_threads"), nb::arg("progress").none(),
           nb::arg("most_bytes"));

@@ -93,6 +93,30 @@ def test_conditions_at_both_ends() -> None:
         lv.solve(m, 1, elements=1, start="positions")
 
 
+def test_a_solution_is_a_guess() -> None:
+    """A rod that hangs at both ends of a second may rest or turn once."""
+    def hanging(**rates: Any) -> lv.Model:
+        m = lv.Model("hanging", gravity=(0, 0, -9.81))
+        rod = m.add_body("rod", lv.box(1, 0.05, 0.05, density=1000), position=(0, 0, -0.5),
+                         rotation_vector=(0, "90 deg", 0), **rates)
+        m.add_revolute("hook", "world", rod, at=(0, 0, 0), axis=(0, 1, 0))
+        return m
+
+    there = lv.positions({"rod": {"position": (0, 0, -0.5), "rotation_vector": (0, "90 deg", 0)}})
+    ends: dict[str, Any] = dict(start="positions", end=there)
+    turn = lv.solve(hanging(velocity=(-4, 0, 0), angular_velocity=(0, 8, 0)), 1, accuracy=1e-9, **ends)
+    assert turn.success and turn(0.5)["rod"].position[2] > 0.4
+    assert lv.solve(hanging(), 1, accuracy=1e-9, **ends)(0.5)["rod"].position[2] < -0.49, "the control"
+    guessed = lv.solve(hanging(), 1, accuracy=1e-9, guess=turn, **ends)
+    assert guessed.success and guessed(0.5)["rod"].position[2] == pytest.approx(turn(0.5)["rod"].position[2], abs=1e-9)
+    with pytest.raises(lv.InputError, match="goes with conditions at both ends"):
+        lv.solve(hanging(), 1, guess=turn)
+    with pytest.raises(lv.InputError, match="no time in common"):
+        lv.solve(hanging(), (1, 2), guess=turn, **ends)
+    with pytest.raises(TypeError, match="a guess is a livens.Solution"):
+        lv.solve(hanging(), 1, guess="turn.nc", **ends)   # type: ignore[arg-type]
+
+
 def test_what_is_not_good_is_told(pendulum: lv.Model) -> None:
     coarse: dict[str, Any] = dict(elements=4, method="midpoint")
     with pytest.warns(lv.SolveWarning, match="suspect") as warned:

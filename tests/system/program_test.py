@@ -255,6 +255,20 @@ class Solve(ProgramTest):
         self.expect(0, "export", "all.nc", "--gltf", "less.glb", env=without)
         self.assertEqual((self.folder / "all.glb").read_bytes(), (self.folder / "less.glb").read_bytes())
 
+    def test_a_guess_is_read_and_never_replaced(self):
+        """The result is not written over the run that it begins with, and a run of something else is refused."""
+        two_point = SOURCE / "examples" / "two_point.toml"
+        self.expect(0, "solve", two_point, "-o", "first.nc", "-q")
+        before = (self.folder / "first.nc").read_bytes()
+        self.expect(0, "solve", two_point, "--guess", "first.nc", "-o", "second.nc", "-q")
+        self.expect(6, "solve", two_point, "--guess", "first.nc", "-o", "first.nc", "--force")
+        self.expect(6, "solve", two_point, "--guess", two_point, "-o", "third.nc")
+        self.expect(6, "solve", two_point, "--guess", "none.nc", "-o", "third.nc")
+        self.write("small.toml", SMALL)
+        self.expect(3, "solve", "small.toml", "--guess", "first.nc", "-o", "third.nc")   # a march
+        self.assertEqual((self.folder / "first.nc").read_bytes(), before)
+        self.assertFalse((self.folder / "third.nc").exists())
+
     def test_instructions_are_pinned_and_named(self):
         self.write("small.toml", SMALL)
         def bytes_of(*arguments, **variables):

@@ -15,10 +15,10 @@
 namespace livens {
 
 SolvedScenario solve_scenario(const Scenario& scenario, SolveOptions options,
-                              const std::shared_ptr<Prepared>& prepared)
+                              const std::shared_ptr<Prepared>& prepared, std::function<State(double t)> guess)
 {
     options.judge = false;   // not part of what is timed, nor is the estimate
-    Problem problem{scenario.conditions, {}, nullptr, prepared};
+    Problem problem{scenario.conditions, std::move(guess), nullptr, prepared};
     const auto begin = std::chrono::steady_clock::now();
     SolvedScenario solved{solve(scenario.model, problem, scenario.time, scenario.method, options),
                           std::move(problem)};

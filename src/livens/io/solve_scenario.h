@@ -19,11 +19,12 @@ struct SolvedScenario {
 };
 
 /// solve() and estimate() of a scenario, with its options or others (whose `judge` does not count). Throws
-/// what solve() throws.
+/// what solve() throws. `guess`: see Problem.
 SolvedScenario solve_scenario(const Scenario& scenario, SolveOptions options,
-                              const std::shared_ptr<Prepared>& prepared);
+                              const std::shared_ptr<Prepared>& prepared,
+                              std::function<State(double t)> guess = {});
 
 /// judge(), and the run with all that the scenario says of it. `goes_on`: see judge().
 Run judged_run(const Scenario& scenario, SolvedScenario&& solved, const std::function<bool()>& goes_on);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens
