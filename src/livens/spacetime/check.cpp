@@ -9,6 +9,7 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/spacetime/elements/rule.h"
+#include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/mixed/bases.h"
 #include "livens/spacetime/mixed/window.h"
 #include "livens/spacetime/phases.h"
@@ -129,8 +130,10 @@ void check_accuracy(const Conditions& given, const Span& span, const Method& met
 }
 
 /// Conditions by component take all of time at once.
-void check_components(const Model& model, const Conditions& given, const Time& time, const Method& method)
+void check_components(const Model& model, const Problem& problem, const Time& time, const Method& method,
+                      const SolveOptions& options)
 {
+    const Conditions& given = problem.conditions;
     check_state(model, given.start, "start");
     if (!given.end.X.empty()) check_state(model, given.end, "end");
     if (given.at_start != Known::nothing || given.at_end != Known::nothing)
@@ -158,6 +161,7 @@ void check_components(const Model& model, const Conditions& given, const Time& t
             throw InputError({"not-finite", "start.known[" + one.quantity.name + "]",
                               "the value of '" + one.quantity.name + "' is no number", to_text(one.value),
                               "a finite number", "", ""});
+    close_ends(model, problem, start_of(time), end_of(time), options.initial);   // throws
 }
 
 void check_conditions(const Model& model, const Conditions& given, const Method& method)
@@ -210,7 +214,7 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
     if (problem.conditions.components.empty())
         check_conditions(model, problem.conditions, method);
     else
-        check_components(model, problem.conditions, time, method);
+        check_components(model, problem, time, method, options);
     check_events(model, problem, time, method);
     const auto* mesh = std::get_if<TimeMesh>(&time);
     if (mesh != nullptr && mesh->n_elements() < 1)
