@@ -46,7 +46,7 @@ def test_the_swinging_atwood_machine_is_that_of_dop853() -> None:
 
 
 def test_a_rope_is_written_and_read_again(tmp_path: pathlib.Path) -> None:
-    m = swinging(length="2 m")
+    m = swinging(length="3 m")
     m.add_point("hook", "bob", (0, 0, 0.05))
     m.add_spring("cord", over=["hook", ("world", (1, 0, 0)), ("counterweight", (0, 0, 0.07))], stiffness="2 N/mm", free_length=3)
     text = m.to_toml()

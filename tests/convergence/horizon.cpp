@@ -352,8 +352,7 @@ TEST_F(LightBetweenRods, RoundingLeavesAnyOtherPlane)
     const Matrix3 tilted = directors_from_rotation_vector({0.4, 0.3, -0.2});
     const Solution s = solved(tilted, 1e-6);
     EXPECT_EQ(s.report.status, SolveStatus::inaccurate);
-    EXPECT_NE(s.report.message.find("rounding errors grow to"), std::string::npos)
-        << s.report.message;
+    EXPECT_NE(s.report.message.find("rounding errors grow to"), std::string::npos) << s.report.message;
     EXPECT_NE(s.report.message.find("most in body 'upper'"), std::string::npos) << s.report.message;
     EXPECT_GT(s.verdict.growth, 1e6);
 }
@@ -392,7 +391,8 @@ TEST(Horizon, ARefusalNamesWhatGrowsAndSaysThatTheMotionIsWhole)
     const Solution s = to(1e-8);
     ASSERT_EQ(s.report.status, SolveStatus::inaccurate);
     EXPECT_EQ(s.motion.end(), 7);
-    EXPECT_NE(s.report.message.find("the motion is complete up to 7 s"), std::string::npos) << s.report.message;
+    EXPECT_NE(s.report.message.find("the motion is complete up to 7 s"), std::string::npos)
+        << s.report.message;
     EXPECT_NE(s.report.message.find("most in body 'bob' moving along ("), std::string::npos)
         << s.report.message;
     EXPECT_TRUE(to(1e-5).report.converged());
@@ -414,8 +414,8 @@ TEST(Horizon, ARefusalByRoundingTellsTheGrowth)
     EXPECT_GT(s.verdict.growth, 5.5e4 / 3);
     EXPECT_LT(s.verdict.growth, 5.5e4 * 1.5);
     EXPECT_TRUE(std::isnan(s.verdict.horizon));
-    for (const char* words : {"the motion is complete up to 30 s", "rounding errors grow to",
-                              "most in body 'b' turning about ("})
+    for (const char* words :
+         {"the motion is complete up to 30 s", "rounding errors grow to", "most in body 'b' turning about ("})
         EXPECT_NE(s.report.message.find(words), std::string::npos) << s.report.message;
 }
 

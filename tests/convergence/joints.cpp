@@ -147,7 +147,8 @@ TEST(EveryJoint, HasOrder2pOfMotionCoordinatesAndReactions)
 }
 
 /// Errors of degree 4 are rounding soon: each is followed from where it is small until it is not much above.
-/// So short a way is not quite straight: each is steeper than degree 3 has it, and in the mean they are right.
+/// So short a way is not quite straight: each is steeper than degree 3 has it, and in the mean they are
+/// right.
 TEST(EveryJoint, HasOrder8WithDegree4)
 {
     constexpr double end = 0.4, small = 1e-6, rounding = 3e-12;

@@ -31,8 +31,8 @@ Model flying_brick()
     placement.velocity = {0.5, -0.2, 0.4};
     placement.angular_velocity = {0.6, 1.1, -0.7};
     Model model({0, 0, -9.81});
-    model.add_body(rigid_body("brick", with_center(with_mass(box(1, {1, 0.6, 0.4}), 2), {0.3, 0.1, -0.05}),
-                              placement));
+    model.add_body(
+        rigid_body("brick", with_center(with_mass(box(1, {1, 0.6, 0.4}), 2), {0.3, 0.1, -0.05}), placement));
     return model;
 }
 
@@ -48,9 +48,8 @@ Loaded on_springs(const std::string& name, const std::vector<SpringDamper>& laws
     loaded.pushes = [=](double, Movers& bodies) {
         Mover& brick = bodies[0];
         for (std::size_t i = 0; i < laws.size(); ++i)
-            brick.push(eyes[i],
-                       spring_pull(brick.at(eyes[i]), brick.velocity(eyes[i]), posts[i], {},
-                                   laws[i].stiffness, laws[i].damping, laws[i].free_length));
+            brick.push(eyes[i], spring_pull(brick.at(eyes[i]), brick.velocity(eyes[i]), posts[i], {},
+                                            laws[i].stiffness, laws[i].damping, laws[i].free_length));
     };
     return loaded;
 }
@@ -59,8 +58,7 @@ Loaded under_a_follower_force()
 {
     Loaded loaded{"a force that turns with the body", flying_brick(), {}};
     const Vector3 eye{0.8, -0.2, 0.1}, force{3, -5, 8};
-    loaded.model.add_load(
-        point_force("jet", 0, eye, {force[0], force[1], force[2]}, Frame::body_fixed));
+    loaded.model.add_load(point_force("jet", 0, eye, {force[0], force[1], force[2]}, Frame::body_fixed));
     loaded.pushes = [=](double, Movers& bodies) { bodies[0].push(eye, bodies[0].R * force); };
     return loaded;
 }

@@ -65,8 +65,7 @@ TEST(Newton, FactorisesOnceAnElementWhereErrorsAreSmall)
                 if (n * degree > 1200) continue;   // nothing new there, but time
                 const Solution s =
                     solve(c.model, {c.model.start()}, make_time_mesh(0, c.end, n), Lobatto{degree}, options);
-                if (!s.report.converged() || s.report.divided > 0 ||
-                    distance(last(s), reference).X > 1e-6)
+                if (!s.report.converged() || s.report.divided > 0 || distance(last(s), reference).X > 1e-6)
                     continue;
                 ++n_accurate;
                 EXPECT_LE(s.report.factorisations, 1.1 * n)
