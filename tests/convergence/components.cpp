@@ -319,6 +319,23 @@ TEST(Components, AlikeAtBothEndsArePeriodicMotions)
     EXPECT_NEAR(found.value("pivot.angle_rate", At::start), (3.0 * i * A).imag(), 1e-11);
 }
 
+/// Places that are stated are exact, and say nothing of the motion's error: velocities there do.
+TEST(Components, HaveErrorsWherePlacesAreStated)
+{
+    const Sample links = links_run();
+    State guess = links.start;
+    SolveOptions options = exact();
+    options.judge = false;
+    const Problem problem{
+        {guess, Known::nothing, {}, Known::nothing, links.conditions(link_places, link_places)}};
+    Solution s = solve(links.model, problem, make_time_mesh(0, links.duration, 1), Lobatto{6, 0}, options);
+    ASSERT_TRUE(s.report.converged()) << s.report.message;
+    estimate(links.model, problem, s.method, options, s);
+    const double off = distance(s.motion.at_end(1), links.motion.at_end(links.n)).V * links.duration;
+    EXPECT_GT(off, 1e-9);   // else it shows nothing
+    EXPECT_GT(s.estimate.largest, 0.1 * off);
+}
+
 /// A rotation vector says nothing at half a turn; at the other end nobody asks.
 TEST(Components, NeedNoValueWhereTheyAreNotStated)
 {

@@ -146,16 +146,16 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
         throw InputError(
             {"conditions-method", path, what + " cannot take conditions by component", "", "", why, help});
     };
+    if (std::holds_alternative<Span>(time))
+        refuse("time.accuracy", "a motion to an accuracy",
+               "elements are found while marching from a state at the start",
+               "give elements instead of the accuracy");
     if (!std::holds_alternative<Lobatto>(method))
         refuse("method.family", "the method " + name_of(method),
                "momenta at both ends are unknowns of lobatto alone", "use lobatto");
     if (model.has_events())
         refuse("start.known", "a mechanism whose joints or drives act for a part of the time",
                "its motion is solved phase by phase, from a state", "give the state at the start");
-    if (std::holds_alternative<Span>(time))
-        refuse("time.accuracy", "a motion to an accuracy",
-               "elements are found while marching from a state at the start",
-               "give elements instead of the accuracy");
     for (const Condition& one : given.components)
         if (!std::isfinite(one.value))
             throw InputError({"not-finite", "start.known[" + one.quantity.name + "]",
