@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 Time: TypeAlias = Union[Number, tuple[Number, Number], Sequence[Number], None]
 """An end (from the start of the model's own ``[time]``, or 0), or (start, end); s, strings with units are taken."""
-End: TypeAlias = Union[Condition, Literal["nothing", "positions", "momenta", "state"], None]
+End: TypeAlias = Union[Condition, Mapping[str, Any], Literal["nothing", "positions", "momenta", "state"], None]
 """What is known at an end of time."""
 ProgressArgument: TypeAlias = Union[bool, Callable[[int, int, float], Any]]
 """True: a line on standard error. A function is called with (elements done, elements, t) about 20 times a second;
@@ -56,8 +56,10 @@ def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, el
         output: Interval between output times, or an ascending list of them, s; they become element ends.
         breaks: Whether elements end where loads jump (``"from_loads"``, default) or not (``"ignore"``).
         method: ``lv.Lobatto(7)``, ``lv.Radau()``, ``lv.Mixed(..)``, .., or a word: ``"radau"``.
-        start: What is prescribed at the initial time, by default the state: a word, or ``lv.positions({..})``, ..
-        end: What is prescribed at the final time, by default nothing. Two halves must be prescribed in all.
+        start: What is prescribed at the initial time, by default the state: a word, or ``lv.positions({..})``, ..;
+            or single quantities, ``{"pivot.angle": 0}``, as in ``[start.known]``.
+        end: What is prescribed at the final time, by default nothing. Two halves must be prescribed in all, or
+            twice as many quantities as the joints leave motions free.
         guess: A motion of the same bodies to begin with, where ``start`` and ``end`` prescribe one half each.
         progress: True for a progress line, or a function.
         strict: Whether to raise :class:`SolveError` with the solution so far instead of issuing a warning.
@@ -231,7 +233,9 @@ def _overrides(model: Model, time: Time, of_time: dict[str, Any], method: Method
                     "give it here: lv.solve(model, 10), or in the model: model.time.end = 10")
     if method is not None or options:
         made["method"] = _method(model, method, options)
-    if start is not None:
+    if isinstance(start, Mapping):
+        made["start"] = _known(model, "start", start)
+    elif start is not None:
         condition = _condition(start, "start")
         made["start"] = _given(model, "start", condition.given)
         if condition.coordinates is not None:
@@ -243,7 +247,9 @@ def _overrides(model: Model, time: Time, of_time: dict[str, Any], method: Method
                 made["joint"] = [_without(joint, "rate") for joint in joints]
         if condition.bodies:
             made["body"] = _moved(model._root.get("body", []), condition, "start")
-    if end is not None:
+    if isinstance(end, Mapping):
+        made["end"] = _known(model, "end", end)
+    elif end is not None:
         condition = _condition(end, "end")
         made["end"] = _given(model, "end", condition.given)
         if condition.bodies:
@@ -254,6 +260,13 @@ def _overrides(model: Model, time: Time, of_time: dict[str, Any], method: Method
                         f"end=lv.{condition.given}({{{lacking[0]!r}: {{'position': (0, 0, 0)}}}})",
                         "what is known at the end concerns every body")
     return made
+
+
+def _known(model: Model, at: str, given: Mapping[str, Any]) -> Table:
+    """The table of an end with conditions by component."""
+    table = _without(_base(model, at), "given")
+    _set(table, at, "known", dict(given))
+    return table
 
 
 def _without(table: Table, name: str) -> Table:

@@ -117,6 +117,22 @@ def test_a_solution_is_a_guess() -> None:
         lv.solve(hanging(), 1, guess="turn.nc", **ends)   # type: ignore[arg-type]
 
 
+def test_conditions_by_component() -> None:
+    m = lv.Model("throw", gravity=(0, 0, -9.81))
+    m.add_body("ball", lv.point(mass=0.4), velocity=(1, 0, 1))
+    sol = lv.solve(m, 2, elements=4, start={"ball.position": (0, 0, "200 cm"), "ball.vy": 0},
+                   end={"ball.x": 12, "ball.z": np.float64(3)})
+    assert sol.success
+    np.testing.assert_allclose(sol["ball"].velocity[0], (6, 0, 0.5 + 9.81), atol=1e-11)
+    assert "start" not in m.to_toml()   # the model is not changed
+    m.add_body("other", lv.point(mass=1))
+    with pytest.raises(lv.InputError, match="too few"):
+        lv.solve(m, 2, elements=4, start={"ball.position": (0, 0, 2)}, end={"ball.x": 12})
+    with pytest.raises(lv.InputError, match="bell.x"):
+        lv.solve(m, 2, elements=4, start={"bell.x": 0})
+
+
+
 def test_what_is_not_good_is_told(pendulum: lv.Model) -> None:
     coarse: dict[str, Any] = dict(elements=4, method="midpoint")
     with pytest.warns(lv.SolveWarning, match="suspect") as warned:

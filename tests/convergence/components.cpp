@@ -246,13 +246,13 @@ TEST(Components, AreNamedByJointsSensorsAndBodies)
     EXPECT_EQ(state_quantities(model, "lower.position")[2].name, "lower.z");
     EXPECT_EQ(state_quantities(model, "elbow.angle_rate").at(0).unit, "rad s-1");
     EXPECT_EQ(value_of(state_quantities(model, "tip.x").at(0), stated, stated, {}), 2);
-    for (const auto& [name, code] : {std::pair{"tip.ax", "quantity-not-smooth"},
-                                     {"effort.kinetic", "quantity-not-smooth"},
-                                     {"elbow.force_x", "quantity-not-smooth"},
-                                     {"elbow.angel", "quantity-unknown"},
-                                     {"tip", "quantity-unknown"},
-                                     {"wrist.angle", "quantity-unknown"},
-                                     {"", "quantity-unknown"}})
+    for (const auto& [name, code] : {std::pair{"tip.ax", "conditions-not-smooth"},
+                                     {"effort.kinetic", "conditions-not-smooth"},
+                                     {"elbow.force_x", "conditions-not-smooth"},
+                                     {"elbow.angel", "conditions-unknown"},
+                                     {"tip", "conditions-unknown"},
+                                     {"wrist.angle", "conditions-unknown"},
+                                     {"", "conditions-unknown"}})
         try {
             state_quantities(model, name);
             ADD_FAILURE() << name;
@@ -317,6 +317,44 @@ TEST(Components, AlikeAtBothEndsArePeriodicMotions)
     found.motion = s.motion;
     EXPECT_NEAR(found.value("pivot.angle", At::start), A.imag(), 1e-11);
     EXPECT_NEAR(found.value("pivot.angle_rate", At::start), (3.0 * i * A).imag(), 1e-11);
+}
+
+/// Places that are stated are exact, and say nothing of the motion's error: velocities there do.
+TEST(Components, HaveErrorsWherePlacesAreStated)
+{
+    const Sample links = links_run();
+    State guess = links.start;
+    SolveOptions options = exact();
+    options.judge = false;
+    const Problem problem{
+        {guess, Known::nothing, {}, Known::nothing, links.conditions(link_places, link_places)}};
+    Solution s = solve(links.model, problem, make_time_mesh(0, links.duration, 1), Lobatto{6, 0}, options);
+    ASSERT_TRUE(s.report.converged()) << s.report.message;
+    estimate(links.model, problem, s.method, options, s);
+    const double off = distance(s.motion.at_end(1), links.motion.at_end(links.n)).V * links.duration;
+    EXPECT_GT(off, 1e-9);   // else it shows nothing
+    EXPECT_GT(s.estimate.largest, 0.1 * off);
+}
+
+/// A rotation vector says nothing at half a turn; at the other end nobody asks.
+TEST(Components, NeedNoValueWhereTheyAreNotStated)
+{
+    Model model;
+    model.add_body(rigid_body("box", {1, {}, identity<3>()}));
+    Sample sample = at_rest(model, 1, 8);
+    std::vector<Condition> conditions;
+    const auto add = [&](const std::string& name, double value, At at) {
+        conditions.push_back(known(model, "box." + name, value, at));
+    };
+    for (const char* axis : {"x", "y", "z"}) {
+        add(axis, 0, At::start);
+        add(std::string("rotation_") + axis, 0, At::start);
+        add(std::string("v") + axis, 1, At::end);
+        add(std::string("angular_velocity_") + axis, axis[0] == 'y' ? std::numbers::pi : 0, At::end);
+    }
+    const Solution s = solve_for(sample, conditions);
+    ASSERT_TRUE(s.report.converged()) << s.report.message;
+    EXPECT_NEAR(s.motion.at_end(8).X[0](0, 1), -1, 1e-12);
 }
 
 /// Small swings take as long as they are wide: half a period brings every one of them to the other side.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
@@ -16,9 +17,14 @@ namespace livens {
 
 namespace {
 
+/// They stay: what ends with its thread asks for memory at its first use, without which the C library ends the
+/// program.
 const std::vector<ShapeValues>& rule_at(ElementKind kind, std::size_t level)
 {
-    thread_local std::array<std::array<std::vector<ShapeValues>, finer.size()>, 6> rules;
+    using Rules = std::array<std::array<std::vector<ShapeValues>, finer.size()>, 6>;
+    static std::mutex in_use;
+    static auto& rules = *new Rules;
+    const std::scoped_lock lock(in_use);
     std::vector<ShapeValues>& rule = rules[static_cast<int>(kind)][level];
     if (rule.empty()) rule = rule_of(kind, finer[level]);
     return rule;

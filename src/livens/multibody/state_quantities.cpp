@@ -103,14 +103,14 @@ std::vector<StateQuantity> state_quantities(const Model& model, const std::strin
     }
     if (found.size() == 1 || (is_vector && found.size() == 3)) return found;
     if (found.size() > 1)
-        throw InputError({"quantity-unknown", name, "more than one object has a quantity '" + name + "'", "",
-                          "", "", "give the sensor, joint or body a name of its own"});
+        throw InputError({"conditions-unknown", name, "more than one object has a quantity '" + name + "'",
+                          "", "", "", "give the sensor, joint or body a name of its own"});
     if (const std::string why = not_smooth(model, object, component); !why.empty())
-        throw InputError({"quantity-not-smooth", name, "'" + name + "' cannot be stated at an end of time",
+        throw InputError({"conditions-not-smooth", name, "'" + name + "' cannot be stated at an end of time",
                           "", "places, angles and their rates", why,
                           all.empty() ? "" : "there are " + list_of(all)});
     throw InputError(
-        {"quantity-unknown", name, "there is no quantity '" + name + "'", "", "",
+        {"conditions-unknown", name, "there is no quantity '" + name + "'", "", "",
          all.empty() ? "no joint with coordinates, sensor or body has the name '" + object + "'" : "",
          all.empty() ? "name them as \"pivot.angle\", \"tip.x\" or \"ball.vx\""
                      : "there are " + list_of(all)});

@@ -29,9 +29,9 @@ struct StateQuantity {
 /// "object.component": the object is a joint, a sensor or a body. Joints have their coordinates and rates,
 /// sensors what they read of coordinates, bodies x, y, z of their reference point and vx, vy, vz;
 /// rotation_x, rotation_y, rotation_z, the rotation vector from where the model has the body;
-/// angular_velocity_x and so on, all in world axes. "position", "velocity", "rotation" and "angular_velocity"
-/// of a body are three at once. Throws InputError: `quantity-unknown`, and `quantity-not-smooth` for what is
-/// no function of X and V.
+/// angular_velocity_x and so on, all in world axes. "position", "velocity", "rotation" and
+/// "angular_velocity" of a body are three at once. Throws InputError: `conditions-unknown`, and
+/// `conditions-not-smooth` for what is no function of X and V.
 std::vector<StateQuantity> state_quantities(const Model& model, const std::string& name);
 
 /// In a state; `stated`: the bodies as the model has them, from which coordinates are counted. Angles are

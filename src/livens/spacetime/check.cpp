@@ -9,6 +9,7 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/spacetime/elements/rule.h"
+#include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/mixed/bases.h"
 #include "livens/spacetime/mixed/window.h"
 #include "livens/spacetime/phases.h"
@@ -128,8 +129,10 @@ void check_accuracy(const Conditions& given, const Span& span, const Method& met
 }
 
 /// Conditions by component take all of time at once.
-void check_components(const Model& model, const Conditions& given, const Time& time, const Method& method)
+void check_components(const Model& model, const Problem& problem, const Time& time, const Method& method,
+                      const SolveOptions& options)
 {
+    const Conditions& given = problem.conditions;
     check_state(model, given.start, "start");
     if (!given.end.X.empty()) check_state(model, given.end, "end");
     if (given.at_start != Known::nothing || given.at_end != Known::nothing)
@@ -142,21 +145,22 @@ void check_components(const Model& model, const Conditions& given, const Time& t
         throw InputError(
             {"conditions-method", path, what + " cannot take conditions by component", "", "", why, help});
     };
+    if (std::holds_alternative<Span>(time))
+        refuse("time.accuracy", "a motion to an accuracy",
+               "elements are found while marching from a state at the start",
+               "give elements instead of the accuracy");
     if (!std::holds_alternative<Lobatto>(method))
         refuse("method.family", "the method " + name_of(method),
                "momenta at both ends are unknowns of lobatto alone", "use lobatto");
     if (model.has_events())
         refuse("start.known", "a mechanism whose joints or drives act for a part of the time",
                "its motion is solved phase by phase, from a state", "give the state at the start");
-    if (std::holds_alternative<Span>(time))
-        refuse("time.accuracy", "a motion to an accuracy",
-               "elements are found while marching from a state at the start",
-               "give elements instead of the accuracy");
     for (const Condition& one : given.components)
         if (!std::isfinite(one.value))
             throw InputError({"not-finite", "start.known[" + one.quantity.name + "]",
                               "the value of '" + one.quantity.name + "' is no number", to_text(one.value),
                               "a finite number", "", ""});
+    close_ends(model, problem, start_of(time), end_of(time), options.initial);   // throws
 }
 
 void check_conditions(const Model& model, const Conditions& given, const Method& method)
@@ -209,7 +213,7 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
     if (problem.conditions.components.empty())
         check_conditions(model, problem.conditions, method);
     else
-        check_components(model, problem.conditions, time, method);
+        check_components(model, problem, time, method, options);
     check_events(model, problem, time, method);
     const auto* mesh = std::get_if<TimeMesh>(&time);
     if (mesh != nullptr && mesh->n_elements() < 1)

@@ -545,6 +545,9 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                    "point-outside", "spring-kink", "directors-dependent", "directors-metric",
                    "directors-nearly-orthonormal", "io-directory", "io-not-found",
                    "io-unreadable"});   // here, of meshes, of hostile files
+    others.insert({"conditions-dependent", "conditions-joints", "conditions-method", "conditions-not-smooth",
+                   "conditions-too-few", "conditions-too-many", "conditions-twice",
+                   "conditions-unknown"});   // known_test.cpp
     others.insert({"point-body", "point-unknown", "gravity-differs", "include-file", "include-ignored",
                    "include-limit", "include-path", "include-ring", "include-source"});   // their own tests
     others.insert({"import-lost", "import-mended", "import-merged", "mjcf-read", "urdf-joint", "urdf-tag",

@@ -81,13 +81,32 @@ std::vector<double> bends_of(const Model& model, const Problem& problem, const M
     return bends;
 }
 
-class BetweenEnds final : public RepeatedMarch {
+struct Asked {
+    const Model& model_;
+    const Problem& problem_;
+    const Ends& ends_;
+    const Span& span_;
+    Lobatto lobatto_;
+    SolveOptions options_;
+    bool is_degree_free_;
+};
+
+/// What tries so far have come to.
+struct Tried {
+    std::optional<Solution> found_;
+    std::vector<std::string> told_;
+    std::string why_;
+    int n_in_vain_ = 0, n_lost_ = 0;
+    double least_ = infinite, in_vain_ = 0;   // errors
+    bool is_once_good_ = false, is_coarsened_ = false;
+};
+
+class BetweenEnds final : public RepeatedMarch, private Asked, private Tried {
 public:
     BetweenEnds(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
                 const Lobatto& lobatto, const SolveOptions& options)
-        : model_(model), problem_(problem), ends_(ends), span_(span), lobatto_(lobatto), options_(options),
-          stops_(stops_of(model, span)), is_degree_free_(lobatto.degree == 0),
-          gap_(nearest_ends * (span.end - span.start))
+        : Asked{model, problem, ends, span, lobatto, options, lobatto.degree == 0},
+          stops_(stops_of(model, span)), gap_(nearest_ends * (span.end - span.start))
     {
         if (is_degree_free_) lobatto_.degree = span.accuracy < high_accuracy ? high_degree : preferred_degree;
         const double times = times_of_motion(model, ends), wanted = times / first_length;
@@ -335,26 +354,13 @@ private:
         return text;
     }
 
-    const Model& model_;
-    const Problem& problem_;
-    const Ends& ends_;
-    const Span& span_;
-    Lobatto lobatto_;
-    SolveOptions options_;
     std::vector<double> stops_, bends_;   // where elements of the next try end; of these, where laws bend
-    bool is_degree_free_;
     int n_first_ = 0;
     double bytes_ = 0;         // an element
     double gap_;               // instants that are closer are one
     double rate_ = 0;          // of the motion, 1/s
     TimeMesh mesh_;            // of the next try
     bool has_stops_ = false;   // it ends elements at all of them
-    std::optional<Solution> found_;
-    std::vector<std::string> told_;
-    std::string why_;
-    int n_in_vain_ = 0, n_lost_ = 0;
-    double least_ = infinite, in_vain_ = 0;   // errors
-    bool is_once_good_ = false, is_coarsened_ = false;
 };
 
 }   // namespace

@@ -67,6 +67,9 @@ ReferenceSolution::ReferenceSolution(const Model& model, const Problem& problem,
     const auto is_place = [](Known known) { return known == Known::positions; };
     if (is_place(problem.conditions.at_start)) meter_.has_given_place(0);
     if (is_place(problem.conditions.at_end)) meter_.has_given_place(first.n_elements());
+    for (const Condition& one : problem.conditions.components)
+        if (!one.quantity.is_rate() && one.at != Condition::At::both)
+            meter_.has_given_place(one.at == Condition::At::start ? 0 : first.n_elements());
     problem_.guess = [&first](double t) { return first.at(t); };
     problem_.near = &first;
     options_.condition = options_.judge = problem_.is_determination_asked = false;

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <span>
 #include <string>
 #include <utility>
@@ -130,11 +131,14 @@ ElementRule make_rule(Points points, int degree)
 
 }   // namespace
 
-/// Made once, for a second solution asks for it with every piece.
+/// Made once, for a second solution asks for it with every piece. (They stay: what ends with its thread asks for
+/// memory at its first use, without which the C library ends the program.)
 ElementRule element_rule(Points points, int degree)
 {
     check_degree(points, degree, true);
-    thread_local std::map<std::pair<Points, int>, ElementRule> known;
+    static std::mutex in_use;
+    static auto& known = *new std::map<std::pair<Points, int>, ElementRule>;
+    const std::scoped_lock lock(in_use);
     const auto [place, is_new] = known.try_emplace({points, degree});
     if (is_new || place->second.degree == 0) place->second = make_rule(points, degree);
     return place->second;

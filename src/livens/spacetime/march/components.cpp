@@ -149,12 +149,16 @@ private:
     {
         std::vector<Remainder> best;
         for (int place = 0; place < n_places; ++place) {
-            const std::vector<Remainder> here =
-                remainders(rows_at(tables_, conditions, {&starts_[place], &ends_about_[place]}, duration_));
+            const DenseMatrix rows =
+                rows_at(tables_, conditions, {&starts_[place], &ends_about_[place]}, duration_);
+            if (!all_finite(rows.a)) continue;   // a coordinate has no derivative there, or joints lock
+            const std::vector<Remainder> here = remainders(rows);
             if (best.empty()) best = here;
             for (std::size_t i = 0; i < here.size(); ++i)
                 if (here[i].norm > best[i].norm) best[i] = here[i];
         }
+        // nothing can be said beforehand: solving tells
+        if (best.empty()) best.assign(conditions.size(), {1, 1, {}});
         return best;
     }
 

@@ -107,11 +107,9 @@ bool EndPoint::finish(const std::vector<double>& momenta)
 
 double EndPoint::value(const StateQuantity& quantity) const { return value_of(quantity, stated_, X_, V_); }
 
-bool EndPoint::are_known(std::span<const StateQuantity* const> quantities) const
+bool EndPoint::is_known(const StateQuantity& quantity) const
 {
-    return std::ranges::all_of(quantities, [this](const StateQuantity* q) {
-        return q->body >= 0 || is_known(q->coordinate.coordinate, X_);
-    });
+    return quantity.body >= 0 || livens::is_known(quantity.coordinate.coordinate, X_);
 }
 
 State EndPoint::state() const { return {state_.t, X_, V_}; }

@@ -30,8 +30,8 @@ public:
     const ConstraintBasis& basis() const { return state_.held.basis; }
     const double* maps() const { return state_.maps.data(); }
     double value(const StateQuantity& quantity) const;
-    /// Whether all coordinates have a value here, see is_known().
-    bool are_known(std::span<const StateQuantity* const> quantities) const;
+    /// Whether it has a value here, see livens::is_known().
+    bool is_known(const StateQuantity& quantity) const;
     State state() const;
 
     /// Momenta that scaled free motion j of a basis at these maps has as a velocity.

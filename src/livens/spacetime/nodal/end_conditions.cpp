@@ -61,7 +61,16 @@ bool EndConditions::evaluate(const WindowLayout& layout, const Nodes& nodes)
         missing_[i] = ends_.value(i) - found;
         largest_ = std::max(largest_, std::abs(missing_[i]) / scale(i));
     }
-    return all_finite(missing_) && points_[0].are_known(quantities_) && points_[1].are_known(quantities_);
+    return all_finite(missing_) && are_known(Condition::At::end, points_[0]) &&
+           are_known(Condition::At::start, points_[1]);
+}
+
+/// Coordinates of the conditions at an end, which need not have a value at the other one.
+bool EndConditions::are_known(Condition::At without, const EndPoint& point) const
+{
+    for (const Condition& one : ends_.components)
+        if (one.at != without && !point.is_known(one.quantity)) return false;
+    return true;
 }
 
 /// Followed from node to node, from the turn that it has at the start.

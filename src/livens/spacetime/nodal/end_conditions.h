@@ -50,6 +50,7 @@ public:
 private:
     double angle_at_end(const StateQuantity& quantity, const WindowLayout& layout, const Nodes& nodes) const;
     double scale(std::size_t i) const;
+    bool are_known(Condition::At without, const EndPoint& point) const;
 
     const ModelTables& tables_;
     const Ends& ends_;

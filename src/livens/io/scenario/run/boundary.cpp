@@ -152,7 +152,8 @@ Table start_table()
                             .or_in("m"),
                         Key{"rate", types::number,
                             "Rate. Default: the rate that follows from the bodies' velocities.", "rad/s"}
-                            .or_in("m/s")}})}};
+                            .or_in("m/s")}}),
+         known_key("start")}};
 }
 
 Table end_table()
@@ -163,15 +164,21 @@ Table end_table()
             "positions and momenta at the end. With the state at the end alone, livens finds where the "
             "motion came from; with positions at both ends, how to get from one to the other. Conditions at "
             "the end need the family lobatto or mixed.",
-            {given("nothing", "As in `[start]`, for the values in `[body.end]`.")}};
+            {given("nothing", "As in `[start]`, for the values in `[body.end]`."), known_key("end")}};
 }
 
-void read_boundary(const Builder& builder, Conditions& boundary)
+void read_boundary(Builder& builder, Conditions& boundary)
 {
     const Section* const start = only_section(builder.run(), "start");
     const Section* const end = only_section(builder.run(), "end");
     boundary.at_start = start != nullptr ? start->pick<Known>("given") : Known::state;
     boundary.at_end = end != nullptr ? end->pick<Known>("given") : Known::nothing;
+    if (start != nullptr) read_known(builder, *start, Condition::At::start, boundary);
+    if (end != nullptr) read_known(builder, *end, Condition::At::end, boundary);
+    const bool has_components =
+        (start != nullptr && start->has("known")) || (end != nullptr && end->has("known"));
+    // the state at the start is known unless something else is said to be
+    if (has_components && (start == nullptr || !start->has("given"))) boundary.at_start = Known::nothing;
     if (boundary.at_end == Known::nothing) return;
     boundary.end.X.resize(builder.model().bodies().size());
     boundary.end.V.resize(builder.model().bodies().size());

@@ -8,6 +8,24 @@
 
 namespace livens::inline io_internal {
 
+namespace {
+
+/// Conditions by component under "known", where there are some.
+void write_components(JsonWriter& json, const std::vector<Condition>& components)
+{
+    if (components.empty()) return;
+    json.key("known").begin_object();
+    for (const Condition::At at : {Condition::At::start, Condition::At::end}) {
+        json.key(at == Condition::At::end ? "end" : "start").begin_object();
+        for (const Condition& one : components)
+            if (one.at == at) json.member(one.quantity.name, one.value);
+        json.end_object();
+    }
+    json.end_object();
+}
+
+}   // namespace
+
 std::string resolved_run(const Builder& builder, const Scenario& scenario)
 {
     const Section& time = *only_section(builder.run(), "time");
@@ -43,6 +61,7 @@ std::string resolved_run(const Builder& builder, const Scenario& scenario)
     json.key("start").begin_object().member("given", word_of(scenario.conditions.at_start));
     json.member("initial", word_of(options.initial)).end_object();
     json.key("end").begin_object().member("given", word_of(scenario.conditions.at_end)).end_object();
+    write_components(json, scenario.conditions.components);
     return json.end_object().text();
 }
 

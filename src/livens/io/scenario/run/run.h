@@ -6,6 +6,7 @@
 
 #include "livens/dynamics/start/start_coordinates.h"
 #include "livens/io/scenario/builder.h"
+#include "livens/spacetime/problem.h"
 
 namespace livens {
 class JsonWriter;
@@ -31,7 +32,11 @@ bool states_velocity(const Builder& builder);
 /// Leads the bodies there, and to what [start] says of coordinates: after the joints, before all others.
 void move_bodies(Builder& builder, const StatedStart& stated);
 /// What is given at both ends, but for the state at the end. The state at the start is the model's.
-void read_boundary(const Builder& builder, Conditions& boundary);
+void read_boundary(Builder& builder, Conditions& boundary);
+/// [start.known] and [end.known]: numbers by the names of quantities.
+Key known_key(const std::string& where);
+/// Conditions by component that a table states.
+void read_known(Builder& builder, const Section& table, Condition::At at, Conditions& boundary);
 /// Bodies at the end of time, of which something is given or not.
 void read_body_ends(Builder& builder, bool is_given, State& end);
 /// Lets a start without any velocity be projected, with a warning, where drives ask for some and nothing else

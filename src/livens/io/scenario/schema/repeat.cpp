@@ -24,7 +24,7 @@ enum class Role : std::uint8_t { word, number, formula };
 bool is_numeric(Form form)
 {
     return form == Form::number || form == Form::integer || form == Form::row || form == Form::rows ||
-           form == Form::factors;
+           form == Form::factors || form == Form::quantities;
 }
 
 Role role_of(const Key* key, bool is_in_list)

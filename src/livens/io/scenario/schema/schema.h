@@ -30,7 +30,8 @@ enum class Form : std::uint8_t {
     templates,       ///< array of tables of the root's key of that name, with braces: see without_repeats()
     named_numbers,   ///< a table of numbers and expressions under names of the user's choice: see Parameters
     model,           ///< a table that holds what a file would, read by itself
-    factors          ///< a table of numbers of any unit under names of the user's choice
+    factors,         ///< a table of numbers of any unit under names of the user's choice
+    quantities       ///< the same, of which each may be three numbers
 };
 
 struct KeyType {
@@ -65,6 +66,7 @@ inline constexpr KeyType text_or_list{"a string or a list of strings", Form::tex
 inline constexpr KeyType named_texts{"a table of strings", Form::named_texts};
 inline constexpr KeyType named_numbers{"a table of numbers and strings", Form::named_numbers};
 inline constexpr KeyType factors{"a table of numbers", Form::factors};
+inline constexpr KeyType quantities{"a table of numbers", Form::quantities};
 inline constexpr KeyType list{"a list of numbers", Form::row};
 inline constexpr KeyType rows{"rows of three numbers", Form::rows};
 inline constexpr KeyType number_or_list{"a number or a list of numbers", Form::number, 0, Form::row};

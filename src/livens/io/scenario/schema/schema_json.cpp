@@ -71,6 +71,7 @@ std::vector<std::string_view> types_of(Form form)
     case Form::named_texts:
     case Form::named_numbers:
     case Form::factors:
+    case Form::quantities:
     case Form::table:
     case Form::model:
         return {"object"};
@@ -133,6 +134,16 @@ void write_keywords(JsonWriter& json, const Key& key, Form form)
     case Form::factors:
         json.key("additionalProperties").begin_object();
         json.key("type").begin_array().value("number").value("string").end_array().end_object();
+        break;
+    case Form::quantities:
+        json.key("additionalProperties").begin_object();
+        json.key("type")
+            .begin_array()
+            .value("number")
+            .value("string")
+            .value("array")
+            .end_array()
+            .end_object();
         break;
     case Form::templates:
         json.member("$ref", "#/properties/" + std::string(key.name));

@@ -77,6 +77,7 @@ private:
         case Form::named_texts:
             return read_named_texts(node);
         case Form::factors:
+        case Form::quantities:
             return read_factors(node);
         case Form::row:
             return read_row(node, key_.type.count);
@@ -274,29 +275,35 @@ private:
     {
         if (node.kind != NodeKind::table) return wrong_type(node);
         return std::ranges::all_of(node.entries(), [&](const Entry& entry) {
-            const Node& given = entry.value;
-            const std::string of = "'" + entry.key + "' in " + subject();
-            if (given.kind == NodeKind::text) {
-                const Computed found = compute(given.text(), parameters_);
-                keep(found.amount.value);
-                return found.code.empty() ||
-                       (!found.error.empty() &&
-                        findings_.error(given.place, found.code,
-                                        of + " cannot be " + quoted(given) + ": " + found.error,
-                                        {"", found.help}));
-            }
-            if (given.kind != NodeKind::integer && given.kind != NodeKind::number)
-                return findings_.error(given.place, "wrong-type",
-                                       of + " must be a number, not " + std::string(describe(given.kind)),
-                                       {"", given.kind == NodeKind::table && !given.entries().empty()
-                                                ? "names with a point are written in quotes: \"" + entry.key +
-                                                      "." + given.entries()[0].key + "\" = ..."
-                                                : ""});
-            return std::isfinite(given.number)
-                       ? keep(given.number)
-                       : findings_.error(given.place, "not-finite",
-                                         of + " must be finite, not " + to_text(given.number));
+            const bool is_list = key_.type.form == Form::quantities && entry.value.kind == NodeKind::array;
+            if (!is_list) return read_factor(entry, entry.value);
+            return read_each(entry.value, 3, [&](const Node& item) { return read_factor(entry, item); });
         });
+    }
+
+    bool read_factor(const Entry& entry, const Node& given)
+    {
+        const std::string of = "'" + entry.key + "' in " + subject();
+        if (given.kind == NodeKind::text) {
+            const Computed found = compute(given.text(), parameters_);
+            keep(found.amount.value);
+            return found.code.empty() ||
+                   (!found.error.empty() &&
+                    findings_.error(given.place, found.code,
+                                    of + " cannot be " + quoted(given) + ": " + found.error,
+                                    {"", found.help}));
+        }
+        if (given.kind != NodeKind::integer && given.kind != NodeKind::number)
+            return findings_.error(given.place, "wrong-type",
+                                   of + " must be a number, not " + std::string(describe(given.kind)),
+                                   {"", given.kind == NodeKind::table && !given.entries().empty()
+                                            ? "names with a point are written in quotes: \"" + entry.key +
+                                                  "." + given.entries()[0].key + "\" = ..."
+                                            : ""});
+        return std::isfinite(given.number)
+                   ? keep(given.number)
+                   : findings_.error(given.place, "not-finite",
+                                     of + " must be finite, not " + to_text(given.number));
     }
 
     bool read_row(const Node& node, int count)
