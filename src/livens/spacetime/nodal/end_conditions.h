@@ -33,8 +33,13 @@ public:
     void keep() { kept_ = current_; }
     /// States at both ends, and what conditions miss. False: something is not finite, or without a value.
     bool evaluate(const WindowLayout& layout, const Nodes& nodes);
-    /// What they miss with the opposite sign, and the largest of it by its scale.
-    const std::vector<double>& missing() const { return missing_; }
+    /// Rows of the balances with what the conditions miss behind them, both with the opposite sign.
+    std::vector<double> behind(std::vector<double> balances) const
+    {
+        balances.insert(balances.end(), missing_.begin(), missing_.end());
+        return balances;
+    }
+    /// The largest of what they miss, by its scale.
     double largest() const { return largest_; }
     /// Of the rows that rounding may make.
     std::vector<double> roundings() const;

@@ -85,10 +85,7 @@ bool NodalSystem::residual()
     if (!conditions_->evaluate(layout_, nodes_)) return false;
     for (const bool last : {false, true})
         rows_.end_momentum(last).about_reference = conditions_->momenta(last);
-    if (!rows_.evaluate(layout_, nodes_)) return false;
-    all_rows_ = rows_.reduced();
-    all_rows_.insert(all_rows_.end(), conditions_->missing().begin(), conditions_->missing().end());
-    return true;
+    return rows_.evaluate(layout_, nodes_);
 }
 
 void NodalSystem::form_all(Elimination& elimination)
@@ -119,8 +116,11 @@ void NodalSystem::solve(std::span<double> dx)
         for (int c = 0; c < tables_.rank; ++c) range_[c] = -nodes_.violations(1)[c];
         nodes_.basis(1).q.solve_R_transposed(range_.data());
     }
-    elimination_->solve(conditions_ != nullptr ? all_rows_ : rows_.reduced(),
-                        pending_ ? range_.data() : nullptr, dx.data());
+    const double* range = pending_ ? range_.data() : nullptr;
+    if (conditions_ == nullptr)
+        elimination_->solve(rows_.reduced(), range, dx.data());
+    else
+        elimination_->solve(conditions_->behind(rows_.reduced()), range, dx.data());
     double* twist = dx.data();
     for (int A = 0; A < layout_.n_nodes(); ++A) {
         if (!layout_.is_unknown(A)) continue;

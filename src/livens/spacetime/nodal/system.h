@@ -81,7 +81,6 @@ private:
     Tangent tangent_;
     std::unique_ptr<Elimination> elimination_;
     EndConditions* conditions_ = nullptr;   // by component
-    std::vector<double> all_rows_;          // those of nodes, and of conditions; only with these
     bool in_use_ = false;                   // a tangent is: null spaces vary smoothly
     bool pending_ = false;                  // violations are left to the next linear step
     double correction_ = 0;                 // largest pull of the last move
