@@ -17,8 +17,8 @@ namespace livens {
 
 namespace {
 
-/// They stay: what ends with its thread asks for memory at its first use, without which the C library ends the
-/// program.
+/// They stay: what ends with its thread asks for memory at its first use, without which the C library ends
+/// the program.
 const std::vector<ShapeValues>& rule_at(ElementKind kind, std::size_t level)
 {
     using Rules = std::array<std::array<std::vector<ShapeValues>, finer.size()>, 6>;

@@ -131,8 +131,8 @@ ElementRule make_rule(Points points, int degree)
 
 }   // namespace
 
-/// Made once, for a second solution asks for it with every piece. (They stay: what ends with its thread asks for
-/// memory at its first use, without which the C library ends the program.)
+/// Made once, for a second solution asks for it with every piece. (They stay: what ends with its thread asks
+/// for memory at its first use, without which the C library ends the program.)
 ElementRule element_rule(Points points, int degree)
 {
     check_degree(points, degree, true);
