@@ -989,8 +989,10 @@ livens_mutant(NAME ends_in_singular_positions
 # An accuracy that was not reached is called reached.
 livens_mutant(NAME inaccurate_is_fine
               FILE spacetime/accuracy/until_accurate.cpp
-              OLD [[report.status = SolveStatus::inaccurate;]]
-              NEW [[report.status = SolveStatus::converged;]]
+              OLD [[report.status = SolveStatus::inaccurate;
+    report.failed_at = motion]]
+              NEW [[report.status = SolveStatus::converged;
+    report.failed_at = motion]]
               TESTS_OF convergence
               MUST_FAIL Accuracy.SaysWhereItIsLost)
 
