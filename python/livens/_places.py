@@ -151,6 +151,13 @@ def faults_in(part: Mapping[str, Any], kind: str, table: Table) -> list[Diagnost
             if d["severity"] == "error" and d["location"][:2] == (kind, index) and not d["code"].startswith("mesh-")]
 
 
+def _inside(value: Any) -> list[Place]:
+    """Of all that stands in a table of a key, and in tables in there."""
+    if not isinstance(value, Table):
+        return []
+    return [spot for key, own in value.places.items() for spot in (own, *_inside(value[key]))]
+
+
 def path_at(root: Table, place: Place) -> str:
     """Of the value that stands there, or else of the first one on the line, whose key it is."""
     best, path = (0, 0), ""
@@ -160,7 +167,8 @@ def path_at(root: Table, place: Place) -> str:
         spots = [(root.places.get(kind, Place()), kind)] if not entries else []
         for table in entries:
             spots.append((table.place, path_of(kind, table)))
-            spots += [(spot, f"{path_of(kind, table)}.{key}") for key, spot in table.places.items()]
+            spots += [(spot, f"{path_of(kind, table)}.{key}") for key, own in table.places.items()
+                      for spot in (own, *_inside(table.get(key)))]
         for spot, found in spots:
             at = (spot.line, spot.column)
             if spot.line == place.line and (not first or at < least):
