@@ -129,8 +129,7 @@ std::vector<int> TreePlan::inside(const JointRows& loop, const ModelTables& tabl
 /// Rotors first, and each loop as soon as all that is inside of it is gone: so it couples no more than that.
 void TreePlan::insert_loops(const ModelTables& tables)
 {
-    std::stable_partition(order.begin(), order.end(),
-                          [&](int b) { return is_point_of_rotors(tables, b); });
+    std::stable_partition(order.begin(), order.end(), [&](int b) { return is_point_of_rotors(tables, b); });
     const int n = tables.n_bodies();
     parent.resize(parent.size() + closing.size(), world);
     for (int k = 0; k < static_cast<int>(closing.size()); ++k) {
