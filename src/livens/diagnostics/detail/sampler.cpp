@@ -66,6 +66,7 @@ void differences_of(const Field& field, int element, double factor, std::vector<
 
 void multiply(const ConstantMatrix& M, const double* d, int n, double* out)
 {
+    if (M.columns == 0) return void(std::fill_n(out, static_cast<std::ptrdiff_t>(M.rows) * n, 0.0));
     point_kernels().multiply(M.entries, M.rows, M.columns, M.stride, d, n, out);
 }
 
