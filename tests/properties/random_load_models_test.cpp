@@ -134,7 +134,11 @@ void for_random_loads(int n_models, const Look& look)
         for (int k = 0; k < 2; ++k) {
             const LoadCase& load_case = load_cases()[n_cases++ % load_cases().size()];
             const int n = of.model.n_bodies(), first = n_points % n;
-            const Load load = moved(load_case.make(random), {first, (first + 1) % n, (first + 2) % n});
+            const Load made = load_case.make(random);
+            if (std::ranges::max(made.bodies) >= n) continue;
+            std::vector<int> to;
+            for (int b = 0; b < n; ++b) to.push_back((first + b) % n);
+            const Load load = moved(made, to);
             const Model model = with(of.model, load);
             std::vector<LoadArguments> at;
             for (int c = 0; c < n_points; ++c) at.push_back(random_arguments(random, load, load_case));
