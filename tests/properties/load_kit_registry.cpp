@@ -208,7 +208,7 @@ struct Turning {
     }
 };
 
-/// Turned by half a radian to one and a half, and a little deformed.
+/// Turned by 0.3 to 1.1 rad about any axis, far from where angles of a ball joint end, and a little deformed.
 LoadCase turning_case(const std::string& type, const std::string& what, int first, bool is_ball,
                       const char* coordinate, MakeAlong make)
 {
@@ -219,7 +219,7 @@ LoadCase turning_case(const std::string& type, const std::string& what, int firs
             },
             [=](Random& random) {
                 std::array<Matrix34, 2> X = of.X;
-                const double angle = 1 + 0.5 * random.number();
+                const double angle = 0.7 + 0.4 * random.number();
                 const Matrix3 R = directors_from_rotation_vector(angle * (1 / std::sqrt(3.0)) *
                                                                  Vector3{std::copysign(1, random.number()),
                                                                          std::copysign(1, random.number()),
