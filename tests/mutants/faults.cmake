@@ -1096,7 +1096,7 @@ livens_mutant(NAME rates_of_tapes_by_one_factor
 # What bodies bear is not passed to those that they hang on.
 livens_mutant(NAME what_a_child_bears_is_not_its_parents
               FILE spacetime/nodal/kernel/tree_tangent.cpp
-              OLD [[add(blocks_.of(above, above), from_b(above));]]
+              OLD [[add_from_b(above);]]
               NEW [[;]]
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.StiffLoadsAreSolvedWithTheirSlopes)
@@ -1570,3 +1570,11 @@ livens_mutant(NAME components_unmet
               NEW [[if (std::abs(values[i] - one.value) <= 1e30 * scale) continue;]]
               TESTS_OF convergence
               MUST_FAIL Components.ThatAreNotMetAreSuspect)
+
+# Steps that have met rounding speak against the factor.
+livens_mutant(NAME rounding_forgets_a_factor
+              FILE spacetime/nodal/kernel/march_kernel.cpp
+              OLD [[!progress.is_done && progress.contraction]]
+              NEW [[progress.contraction]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL MarchKernel.AFactorServesElementsOfTheSameLength)

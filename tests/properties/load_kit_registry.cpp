@@ -87,9 +87,9 @@ LoadCase pressure_case(const std::string& what, TimeVector (*value)(Random&))
             }};
 }
 
-LoadCase torque_case(const std::string& what, Frame frame, TimeVector (*value)(Random&))
+LoadCase torque_case(const std::string& what, Frame frame, TimeVector (*value)(Random&), int reaction = world)
 {
-    return {"torque", what, [=](Random& random) { return torque("l", 0, value(random), frame); }};
+    return {"torque", what, [=](Random& random) { return torque("l", 0, value(random), frame, reaction); }};
 }
 
 /// `change` takes parts of the spring away.
@@ -417,6 +417,8 @@ const std::vector<LoadCase>& load_cases()
         torque_case("torque", Frame::inertial, steady),
         torque_case("torque that varies", Frame::inertial, varying),
         torque_case("torque in body axes", Frame::body_fixed, varying),
+        torque_case("couple", Frame::inertial, varying, 1),
+        torque_case("couple about axes of a body", Frame::body_fixed, varying, 1),
         spring_case("spring and damper", 1, [](SpringDamper&) {}),
         spring_case("spring and damper on the world", world, [](SpringDamper&) {}),
         spring_case("spring", 1, [](SpringDamper& law) { law.damping = 0; }),

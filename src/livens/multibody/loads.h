@@ -208,7 +208,8 @@ Load point_force(const std::string& name, int body, const Vector3& point, const 
                  Frame frame);
 
 /// Torque (N m) on a body, F_i = 1/2 mu x d^i with contravariant directors  (P21); the metric is inverted.
-Load torque(const std::string& name, int body, const TimeVector& value, Frame frame);
+/// `reaction`: a body that takes the opposite torque, about the same axes.
+Load torque(const std::string& name, int body, const TimeVector& value, Frame frame, int reaction = world);
 
 /// What a spring does at an elongation e: its force, and the slope and the integral of that.
 struct SpringValue {

@@ -96,6 +96,27 @@ TEST(Torque, DoesTheWorkOfItsSpinOnRigidStates)
     }
 }
 
+TEST(Torque, OfACoupleIsTakenFromTheOtherBody)
+{
+    Random random(5);
+    for (int n = 0; n < states; ++n) {
+        const Vector3 mu = random.vector(), w[2] = {random.vector(), random.vector()};
+        LoadArguments at;
+        for (int b = 0; b < 2; ++b) {
+            at.X[b] = random.rigid();
+            at.V[b] = rate(at.X[b], random.vector(), w[b]);
+        }
+        for (const Frame frame : {Frame::inertial, Frame::body_fixed}) {
+            const Load couple = torque("t", 0, constant(mu), frame, 1);
+            const LoadForces F = forces(couple, at);
+            const Vector3 turned = frame == Frame::body_fixed ? directors(at.X[0]) * mu : mu;
+            EXPECT_LT(largest(moment(at.X[0], F[0]) - turned), 1e-14);
+            EXPECT_LT(largest(moment(at.X[1], F[1]) + turned), 1e-14);
+            EXPECT_NEAR(load_power(couple, at), dot(turned, w[0] - w[1]), 1e-14);
+        }
+    }
+}
+
 TEST(SpringDamper, PullsAlongTheLineByItsLaw)
 {
     const Load load = spring_damper("s", 0, {0.5, 0, 0}, 1, {-0.5, 0, 0}, {100, 7, 1.5});

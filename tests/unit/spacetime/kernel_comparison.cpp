@@ -91,6 +91,13 @@ double difference_of_momenta(const ModelTables& tables, const WindowLayout& stre
     return difference(tangent(p), tangent(end_momentum(tables, stretch, system, start)));
 }
 
+/// Of slopes, where the element that was solved last is solved once more.
+int factors_of_another(MarchKernel& kernel, const WindowLayout& stretch, const InstantState& start)
+{
+    NewtonReport report;
+    return kernel.solve(stretch, start, {1e-14, 30, {}}, false, report) ? report.slope_factors : 1;
+}
+
 MassProperties any_mass(Random& random)
 {
     MassProperties properties = with_mass(
@@ -205,11 +212,11 @@ Comparison compare(const Model& model, int degree, double h, double fault, const
     double pivot = 1;
     for (int A = 0; A <= degree; ++A) pivot = std::min(pivot, kernel.pivot(A));
     // rows are sums of such terms, and multipliers the worse known the more the rows depend on each other
-    double largest_k = 0;
-    for (const double k : rule.k) largest_k = std::max(largest_k, std::abs(k));
-    found.wrench *= pivot / (size * largest_k);
+    found.wrench *= pivot / (size * size_of(rule.k));
     if (points == Points::lobatto)
         found.momentum = difference_of_momenta(tables, stretch, start, system, p) / size;
+    found.took_slopes = report.took_slopes;
+    found.factors_again = factors_of_another(kernel, stretch, start);
     return found;
 }
 

@@ -15,6 +15,8 @@ namespace livens {
 
 struct Comparison {
     bool is_solved = false, has_reference = false;
+    bool took_slopes = false;
+    int factors_again = 1;                    // of slopes, where the same element is solved once more
     double X = 0, wrench = 0, momentum = 0;   // largest differences, see below
     double worst() const { return std::max({X, wrench, momentum}); }
 };

@@ -59,6 +59,21 @@ TEST(StepSizeController, FindsTheLengthThatTheToleranceAllows)
     }
 }
 
+TEST(StepSizeController, LengthsStayWhereAFactorServesTheNext)
+{
+    const double right = 0.8 * 2 * std::pow(1e-8 / 0.04, 1.0 / 9);   // as above
+    const auto next_to = [&](double first, bool has_factor) {
+        StepSizeController controller(Points::lobatto, 4, 1e-8, first, {0, 100});
+        for (int i = 0; i < 3; ++i)   // so that there is no trend
+            controller.accepted(first, std::pow(first / 2, 5), 1, has_factor);
+        return controller.next_end(0);
+    };
+    EXPECT_DOUBLE_EQ(next_to(0.8 * right, true), 0.8 * right);
+    EXPECT_NEAR(next_to(0.8 * right, false), right, 1e-3 * right);
+    EXPECT_NEAR(next_to(0.6 * right, true), right, 1e-3 * right);   // worth another
+    EXPECT_NEAR(next_to(1.2 * right, true), right, 1e-3 * right);
+}
+
 /// Elements that lose next to nothing up to a length at which they see nothing of the motion; how many there
 /// are, and how many were refused.
 std::pair<int, int> blind_beyond(double first, double then)

@@ -74,6 +74,25 @@ TEST(MarchKernel, StiffLoadsAreSolvedWithTheirSlopes)
     });
 }
 
+/// Steps that have met rounding shrink no more, and say nothing of the factor.
+TEST(MarchKernel, AFactorServesElementsOfTheSameLength)
+{
+    Random random(5);
+    int by_slopes = 0, made_again = 0;
+    while (by_slopes < 60) {
+        Model model = any_mechanism(random);
+        try {
+            add_stiff_loads(random, model, true);
+            const Comparison found = compare(model, 5, 0.02, 0, nullptr, Points::radau);
+            if (!found.is_solved || !found.took_slopes) continue;
+            ++by_slopes;
+            made_again += found.factors_again > 0 ? 1 : 0;
+        } catch (const InputError&) {   // overdetermined: no start
+        }
+    }
+    EXPECT_LE(made_again, 15);
+}
+
 /// A heavy mass that hangs on light links and swings: what draws them stiffens them.
 Model heavy_on_light(Random& random)
 {

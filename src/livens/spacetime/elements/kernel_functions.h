@@ -30,6 +30,29 @@ struct Sizes {
     double finite = 0;   ///< not finite if something is not
 };
 
+/// M (i, k; A): n rows, f columns, at p nodes of their own.
+struct BlockSize {
+    int n, f, p;
+};
+
+/// Of dense blocks, row by row, whose rows and columns are numbers at p nodes: (i, A) is row i p + A.
+struct BlockFunctions {
+    /// out (k, A; .) += sum_i M (i, k; A) J (i, A; .), rows of `out` that far apart.
+    void (*add_from_left)(const double* M, const BlockSize&, const double* J, int columns, double* out,
+                          int apart);
+    /// out (.; k, B) += sum_j J (.; j, B) M (j, k; B); transposed: M (k, j; B).
+    void (*add_from_right)(const double* J, int rows, const double* M, const BlockSize&, bool transposed,
+                           double* out);
+    /// to -= a b
+    void (*subtract_product)(double* to, const double* a, const double* b, int rows, int inner, int columns);
+    /// y -= A x
+    void (*subtract_times)(double* y, const double* A, int rows, int columns, const double* x);
+    /// A square A as its factor with exchanged rows. False: singular, or no number.
+    bool (*factorise_square)(double* A, int* exchanged, int n);
+    /// x <- A^-1 x for all columns.
+    void (*solve_square)(const double* A, const int* exchanged, int n, double* x, int columns);
+};
+
 /// The functions of one set of instructions for W lanes.
 struct Functions {
     int width;
@@ -59,6 +82,7 @@ struct Functions {
     void (*move)(const Pattern&, const Values& nodes, const Rule&, Sizes&);
     /// Twist rows, about the centres, of what multipliers take at all nodes: 6 scalars a body.
     void (*sum_impulses)(const Pattern&, const Values& start, const Values& nodes, double* sum);
+    const BlockFunctions* blocks;
 };
 
 /// For at least so many lanes, on the registers that are in use; null: there are none.

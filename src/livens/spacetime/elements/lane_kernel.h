@@ -5,6 +5,7 @@
 
 #include "livens/dynamics/lanes/lane_loads.h"
 #include "livens/dynamics/lanes/lane_rows.h"
+#include "livens/spacetime/elements/lane_blocks.h"
 #include "livens/spacetime/elements/lane_places.h"
 
 namespace livens::lanes {
@@ -257,7 +258,8 @@ constexpr Functions functions_of{W,
                                  propose<W>,
                                  project<W>,
                                  move<W>,
-                                 sum_impulses<W>};
+                                 sum_impulses<W>,
+                                 &blocks_of};
 
 /// For degrees up to 18, with as few lanes as registers have room for.
 template <int W = LIVENS_REGISTER>

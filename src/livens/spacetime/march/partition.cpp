@@ -131,9 +131,10 @@ bool AdaptiveElements::reject(const Elements& of, double velocity_jump, bool can
     return true;
 }
 
-void AdaptiveElements::accepted(const Elements& of, const AcceptedElements& closed, int iterations)
+void AdaptiveElements::accepted(const Elements& of, const AcceptedElements& closed, int iterations,
+                                bool has_factor)
 {
-    controller_.accepted(mesh_.length(of.first), closed.velocity_jump, iterations);
+    controller_.accepted(mesh_.length(of.first), closed.velocity_jump, iterations, has_factor);
 }
 
 std::vector<int> divide(int n_elements, int length, int shortest)

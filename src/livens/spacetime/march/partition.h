@@ -43,7 +43,7 @@ public:
     virtual bool reject(const Elements&, double velocity_jump, bool can_help, SolveReport&) = 0;
     /// A window is solved in two, the first of which ends before element `middle`.
     virtual void split(const Elements&, int middle) = 0;
-    virtual void accepted(const Elements&, const AcceptedElements&, int iterations) = 0;
+    virtual void accepted(const Elements&, const AcceptedElements&, int iterations, bool has_factor) = 0;
 };
 
 /// How windows of a mesh are divided.
@@ -70,7 +70,7 @@ public:
     void avoid(const Elements&, RankLoss) override;
     bool reject(const Elements&, double velocity_jump, bool can_help, SolveReport&) override;
     void split(const Elements&, int middle) override;
-    void accepted(const Elements&, const AcceptedElements&, int) override {}
+    void accepted(const Elements&, const AcceptedElements&, int, bool) override {}
 
 private:
     int far(const Elements& of) const { return options_.direction > 0 ? of.last : of.first; }
@@ -100,7 +100,7 @@ public:
     void avoid(const Elements&, RankLoss) override;
     bool reject(const Elements&, double velocity_jump, bool can_help, SolveReport&) override;
     void split(const Elements&, int) override {}
-    void accepted(const Elements&, const AcceptedElements&, int iterations) override;
+    void accepted(const Elements&, const AcceptedElements&, int iterations, bool has_factor) override;
 
 private:
     TimeMesh& mesh_;

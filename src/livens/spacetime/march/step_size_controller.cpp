@@ -20,7 +20,8 @@ constexpr double safety = 0.8, shrink = 0.3, grow = 2.5;
 /// which the next is at least this share.
 constexpr int most_steps = 10;
 constexpr double far_too_many = 30, least_ease = 0.5;
-constexpr double steepest = 0.5;   // of what one length is foretold to be shorter than the one before
+constexpr double worth_a_factor = 1.4;   // times the length: less does not pay for another factor
+constexpr double steepest = 0.5;         // of what one length is foretold to be shorter than the one before
 /// After an element that saw nothing of the motion: of its length, and by how much this regains from element
 /// to element, the faster the longer all goes well.
 constexpr double below_blind = 0.8, regain = 1.01;
@@ -106,7 +107,7 @@ double StepSizeController::trend_to(double scale)
     return std::clamp(scale / before, steepest, 1.0);
 }
 
-void StepSizeController::accepted(double length, double jump, int steps)
+void StepSizeController::accepted(double length, double jump, int steps, bool has_factor)
 {
     // an element that a stop cut short says as much as a whole one, but not beyond what was tried before
     const double tried = steps <= far_too_many && length < length_ ? length_ : 0;
@@ -118,6 +119,7 @@ void StepSizeController::accepted(double length, double jump, int steps)
     const double trend = is_rounding ? 1 : trend_to(length * power(jump, -1.0 / (degree_ + 1)));
     length_ = is_rounding ? most : std::clamp(trend * suggestion(length, jump), shrink * length, most);
     length_ = std::min(length_, std::max(blind_length_, length));
+    if (has_factor && length_ > length && length_ < worth_a_factor * length) length_ = length;
     last_refused_.first -= length;
     if (last_refused_.first > 1e-3 * length) length_ = std::min(length_, last_refused_.second);
     if (is_rounding && tells_length_) return;

@@ -37,8 +37,8 @@ public:
     /// No element end must be at this stop any more, if it may be left.
     void leave(double stop);
     const std::vector<double>& left() const { return left_; }
-    /// `steps`: of the iteration.
-    void accepted(double length, double jump, int steps);
+    /// `steps`: of the iteration; `has_factor`: one that serves the next element if that is as long.
+    void accepted(double length, double jump, int steps, bool has_factor = false);
     /// The next element is as long as this, if no stop is nearer.
     void shorten(double length) { length_ = length; }
     /// Else the next element would end where it begins.

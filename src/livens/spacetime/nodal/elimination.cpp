@@ -11,6 +11,7 @@
 #include "livens/dynamics/instant/instant.h"
 #include "livens/solvers/dense.h"
 #include "livens/solvers/patience.h"
+#include "livens/spacetime/elements/kernel_functions.h"
 #include "livens/spacetime/nodal/carried.h"
 #include "livens/spacetime/nodal/nodes.h"
 
@@ -95,7 +96,6 @@ private:
     {
         return z_.data() + place(A) + tables_.bodies[body].first * f_;
     }
-    void multiply_pair(int r, double* u, double* w) const;
     const double* maps_at(int A) const
     {
         return maps_.data() + 12 * tables_.bodies.size() * static_cast<std::size_t>(A);
@@ -106,6 +106,7 @@ private:
     const ModelTables& tables_;
     const WindowLayout* layout_ = nullptr;   // current
     const Nodes* nodes_ = nullptr;
+    const lanes::BlockFunctions* functions_ = lanes::functions(4)->blocks;
     int f_;
     BlockStructure structure_;
     std::unique_ptr<LinearSolver> solver_;
@@ -148,45 +149,16 @@ void NullSpaces::block(int body_i, int body_j, const double* values)
     }
 }
 
-/// Rows r and r + 1 of Z_A^T product, three terms at a time: n is a multiple of three.
-void NullSpaces::multiply_pair(int r, double* __restrict u, double* __restrict w) const
-{
-    const int f = f_, n = tables_.n_twists;
-    const double* z = z_.data() + place(A_) + r;
-    std::fill(u, u + f, 0.0);
-    std::fill(w, w + f, 0.0);
-    for (int i = 0; i + 2 < n; i += 3) {
-        const double* __restrict v0 = product_.data() + i * f;
-        const double* __restrict v1 = v0 + f;
-        const double* __restrict v2 = v1 + f;
-        const double *a = z + i * f, *b = a + f, *c = b + f;
-        const double a0 = a[0], b0 = b[0], c0 = c[0], a1 = a[1], b1 = b[1], c1 = c[1];
-        for (int j = 0; j < f; ++j) {
-            u[j] += a0 * v0[j] + b0 * v1[j] + c0 * v2[j];
-            w[j] += a1 * v0[j] + b1 * v1[j] + c1 * v2[j];
-        }
-    }
-}
-
 /// The block at (A, B) <- Z_A^T product.
 void NullSpaces::close()
 {
     if (f_ == 0) return;
-    const int f = f_, n = tables_.n_twists, stride = matrix_.stride(e_);
-    double* block = matrix_.block(e_, place_of_row(*layout_, A_), B_);
-    int r = 0;
-    for (; r + 1 < f; r += 2) {
-        if (f >= 64) Patience::ask();
-        multiply_pair(r, block + r * stride, block + (r + 1) * stride);
-    }
-    if (r == f) return;
-    double* __restrict u = block + r * stride;
-    std::fill(u, u + f, 0.0);
-    for (int i = 0; i < n; ++i) {
-        const double s = null_space(A_, 0)[i * f + r];
-        const double* __restrict v = product_.data() + i * f;
-        for (int j = 0; j < f; ++j) u[j] += s * v[j];
-    }
+    if (f_ >= 64) Patience::ask();
+    const int stride = matrix_.stride(e_);
+    double* const block = matrix_.block(e_, place_of_row(*layout_, A_), B_);
+    for (int r = 0; r < f_; ++r) std::fill_n(block + r * stride, f_, 0.0);
+    functions_->add_from_left(z_.data() + place(A_), {tables_.n_twists, f_, 1}, product_.data(), f_, block,
+                              stride);
 }
 
 /// P(0) is added at the first node, P(T) taken off at the last.

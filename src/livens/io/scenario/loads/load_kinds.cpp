@@ -22,6 +22,13 @@ Key body_of_point()
         .needed_without("point");
 }
 
+Key reaction_key()
+{
+    return {"reaction", types::text,
+            "Another body, which takes the opposite torque: a couple between the two. Default: none, or "
+            "`\"world\"`."};
+}
+
 Key interpolation_key()
 {
     return choice("interpolation", {"linear", "spline"},
@@ -260,7 +267,9 @@ const std::vector<LoadKind>& load_kinds()
         {{"force", "acts at a point of a body", keys_on_body("force", "N", {point})},
          make_force,
          check_value},
-        {{"torque", "acts on a body", keys_on_body("torque", "N m", {})}, make_torque, check_value},
+        {{"torque", "acts on a body", keys_on_body("torque", "N m", {reaction_key()})},
+         make_torque,
+         check_value},
         {{"spring",
           "acts along the line between two points, along a rope over several points, or along a joint "
           "coordinate, "

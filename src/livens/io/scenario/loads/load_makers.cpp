@@ -222,7 +222,7 @@ Load make_force(const LoadSources& p)
 Load make_torque(const LoadSources& p)
 {
     return on_body(p, [&](const TimeVector& value) {
-        return torque(p.name, p.first, value, p.section.pick<Frame>("frame"));
+        return torque(p.name, p.first, value, p.section.pick<Frame>("frame"), p.second);
     });
 }
 

@@ -53,7 +53,12 @@ bool find_bodies(Builder& builder, const Section& load, BodyReference& first, Bo
     if (named->text == "world")
         return load.error("body", "load-self", load.label() + " acts on the world, which does not move");
     first = builder.find_body(named->text, named->node->place, load);
-    return first.is_usable;
+    const Value* const other = load.takes("reaction") ? load.find("reaction") : nullptr;
+    if (other == nullptr) return first.is_usable;
+    if (other->text == named->text)
+        return load.error("reaction", "load-self", load.label() + " acts from a body on itself");
+    second = builder.find_body(other->text, other->node->place, load);
+    return first.is_usable && second.is_usable;
 }
 
 void read_load(Builder& builder, const Section& load, const std::string& name, bool has_good_name)

@@ -13,7 +13,7 @@ constexpr double least_factor = 10, factor_of_freedom = 0.65, step_of_freedom = 
 KernelTangent::KernelTangent(const ModelTables& tables, const ElementRule& rule,
                              const lanes::Functions* functions)
     : degree_(rule.degree), n_twists_(tables.n_twists), slopes_(tables, rule, functions->width),
-      reduced_(tables, rule, functions), tree_(tables, rule, functions->width)
+      reduced_(tables, rule, functions), tree_(tables, rule, functions)
 {
     slopes_.has_joints = tables.loads.with_tangent.empty();
 }

@@ -4,22 +4,11 @@
 
 #include <vector>
 
+#include "livens/spacetime/elements/kernel_functions.h"
+
 namespace livens::inline spacetime_internal {
 
 using Numbers = std::vector<double>;
-
-struct LaneBlock {
-    const Numbers& of;
-    int rows, columns;
-};
-
-/// out (k, A; .) = sum_i M (i, k; A) J (i, A; .), i < n, k < f: rows of J taken together, node by node.
-Numbers from_left(const Numbers& M, int n, int f, int p, const LaneBlock& J);
-/// out (.; k, B) = sum_j J (.; j, B) M (j, k; B).
-Numbers from_right(const LaneBlock& J, const Numbers& M, int n, int f, int p);
-void add(Numbers& to, const Numbers& more);
-/// to -= a b
-void subtract_product(Numbers& to, const Numbers& a, const Numbers& b, int rows, int inner, int columns);
 
 /// A square matrix as its factor with exchanged rows.
 struct SquareFactor {
@@ -27,9 +16,16 @@ struct SquareFactor {
     std::vector<int> exchanged;
 
     /// Of what stands in A, n rows. False: singular, or no number.
-    bool factorise(int n);
+    bool factorise(const lanes::BlockFunctions& functions, int n)
+    {
+        exchanged.resize(static_cast<std::size_t>(n));
+        return functions.factorise_square(A.data(), exchanged.data(), n);
+    }
     /// x <- A^-1 x for all columns.
-    void solve(double* x, int columns) const;
+    void solve(const lanes::BlockFunctions& functions, double* x, int columns) const
+    {
+        functions.solve_square(A.data(), exchanged.data(), static_cast<int>(exchanged.size()), x, columns);
+    }
 };
 
 }   // namespace livens::inline spacetime_internal

@@ -233,11 +233,13 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
         moved += sizes.step;
         const double noise = std::clamp(rounding_by_pivot / pivot, least_rounding, most_rounding);
         if (!(is_accelerated ? progress.approach(left, sizes) : progress.take(sizes, noise))) return false;
-        if (kind == Steps::by_tangent && progress.contraction > slow_contraction) choice_.forget_factor();
+        const bool is_slow = !progress.is_done && progress.contraction > slow_contraction;
+        if (kind == Steps::by_tangent && is_slow) choice_.forget_factor();   // rounding says nothing of it
     }
     has_near_factor_ = moved <= fits_for_next * pivot;
     report = progress.report(sizes, start.momentum);
     report.took_slopes = kind == Steps::by_tangent;
+    report.slope_factors = choice_.n_factors();
     return std::min(pivot, from.pivots[0]) > least_pivot * least_pivot;   // false: also no number
 }
 

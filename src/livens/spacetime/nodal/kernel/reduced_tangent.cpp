@@ -197,7 +197,7 @@ bool ReducedTangent::factorise(const WindowLayout& layout, const JointFactor& st
     for (int node = 1; node <= last_with_joints(rule_, slopes); ++node)
         for (const SlopesOfPair& pair : slopes.joints.find(node, layout, *pattern_, nodes))
             add_at_node(node, pair);
-    return factor_.factorise(size);
+    return factor_.factorise(*functions_->blocks, size);
 }
 
 void ReducedTangent::propose(const lanes::Values& nodes)
@@ -210,7 +210,7 @@ void ReducedTangent::propose(const lanes::Values& nodes)
             for (int i = 0; i < n_; ++i) sum -= y[i] * nodes.rows[i * W + A];
             theta_[static_cast<std::size_t>(A * f_ + k)] = sum;
         }
-    factor_.solve(theta_.data(), 1);
+    factor_.solve(*functions_->blocks, theta_.data(), 1);
     std::fill_n(nodes.step, n_ * W, 0.0);
     for (int l = 0; l < p; ++l)
         for (int m = 0; m < f_; ++m) {

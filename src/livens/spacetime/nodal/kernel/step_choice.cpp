@@ -15,7 +15,6 @@ namespace {
 constexpr int always_allowed = 14;                 // of free bodies, which are always allowed
 constexpr double usual_steps = 8;                  // of an element by slopes, before one was seen
 constexpr double usual_share = 0.25;               // of a factor that an element makes, likewise
-constexpr int more_than_fresh = 2;                 // steps with a factor of an element before
 constexpr int first_trial = 8, last_trial = 512;   // elements until steps of free bodies are tried again
 constexpr double same_length = 0.03;   // of the motion of stiff loads a factor then leaves about twice that
 
@@ -53,7 +52,7 @@ void StepChoice::factorised(bool is_good, double h)
 {
     is_kept_ = is_good;
     h_ = h;
-    fresh_steps_ = 0;
+    kept_steps_ = n_kept_ = 0;
     ++n_factors_;
 }
 
@@ -77,8 +76,11 @@ void StepChoice::took(int steps, bool is_solved, bool was_by_tangent)
     cost_by_tangent_ += 0.5 * (n_factors_ * cost.factor + steps * cost.step - cost_by_tangent_);
     n_factors_ = 0;
     --n_until_trial_;
-    if (fresh_steps_ == 0) fresh_steps_ = steps;
-    if (!is_solved || steps > fresh_steps_ + more_than_fresh) is_kept_ = false;
+    // a factor is made anew once an element with it costs more than those before did with it, it included
+    const double mean = (cost.factor + cost.step * kept_steps_) / std::max(n_kept_, 1);
+    if (!is_solved || (n_kept_ > 0 && cost.step * steps > mean)) is_kept_ = false;
+    kept_steps_ += steps;
+    ++n_kept_;
 }
 
 }   // namespace livens

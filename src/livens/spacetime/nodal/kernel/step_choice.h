@@ -33,6 +33,8 @@ public:
     void forget_factor();
     /// The element was solved, or not.
     void took(int steps, bool is_solved, bool was_by_tangent);
+    /// Made for the element at hand.
+    int n_factors() const { return n_factors_; }
     int last_steps() const { return last_steps_; }
 
 private:
@@ -41,7 +43,7 @@ private:
     bool is_stiff_ = false, is_kept_ = false;
     double h_ = 0;
     double cost_by_tangent_ = 0;   // of an element, in steps of free bodies, as the last ones had it
-    int last_steps_ = 0, n_until_trial_ = 0, trial_after_ = 0, fresh_steps_ = 0, n_factors_ = 0;
+    int last_steps_ = 0, n_until_trial_ = 0, trial_after_ = 0, kept_steps_ = 0, n_kept_ = 0, n_factors_ = 0;
 };
 
 }   // namespace livens::inline spacetime_internal

@@ -16,23 +16,26 @@ void TreeBlocks::resize(const std::vector<int>& sizes, int p)
     sizes_ = sizes;
     first_ = {0};
     for (const int size : sizes) first_.push_back(first_.back() + size * p);
-    blocks_.clear();
+    rows_.assign(sizes.size(), {});
 }
 
 void TreeBlocks::clear()
 {
-    for (auto& [pair, block] : blocks_) std::ranges::fill(block, 0.0);
+    for (auto& row : rows_)
+        for (auto& [v, block] : row) std::ranges::fill(block, 0.0);
 }
 
 Numbers& TreeBlocks::of(int u, int v)
 {
-    Numbers& block = blocks_[{u, v}];
-    if (block.empty()) block.assign(static_cast<std::size_t>(size(u) * p_ * size(v) * p_), 0.0);
-    return block;
+    auto& row = rows_[static_cast<std::size_t>(u)];
+    const auto found = std::ranges::find(row, v, &std::pair<int, Numbers>::first);
+    if (found != row.end()) return found->second;
+    return row.emplace_back(v, Numbers(static_cast<std::size_t>(size(u) * p_ * size(v) * p_), 0.0)).second;
 }
 
-TreeTangent::TreeTangent(const ModelTables& tables, const ElementRule& rule, int width)
-    : tables_(tables), rule_(rule), width_(width)
+TreeTangent::TreeTangent(const ModelTables& tables, const ElementRule& rule,
+                         const lanes::Functions* functions)
+    : tables_(tables), rule_(rule), functions_(functions)
 {}
 
 void TreeTangent::use(const std::shared_ptr<const RowPattern>& pattern)
@@ -143,23 +146,25 @@ void TreeTangent::add_loops(const NodeGradients& gradients)
 void TreeTangent::pass_to_parent(int b)
 {
     const JointMotion& motion = motions_[static_cast<std::size_t>(b)];
-    const int above = plan_->parent[static_cast<std::size_t>(b)], p = rule_.degree, d = blocks_.size(b),
-              n = blocks_.size(above);
-    const auto from_b = [&](int v) -> Numbers {   // T^T J_bv
-        return from_left(motion.T_rows, d, n, p, {blocks_.of(b, v), d * p, blocks_.size(v) * p});
+    const int above = plan_->parent[static_cast<std::size_t>(b)], p = rule_.degree;
+    const lanes::BlockSize of_T{blocks_.size(b), blocks_.size(above), p};
+    const auto add_from_b = [&](int v) {   // J_pv + T^T J_bv
+        of_blocks().add_from_left(motion.T_rows.data(), of_T, blocks_.of(b, v).data(), blocks_.size(v) * p,
+                                  blocks_.of(above, v).data(), blocks_.size(v) * p);
     };
-    const auto to_b = [&](int u) -> Numbers {   // J_ub T
-        return from_right({blocks_.of(u, b), blocks_.size(u) * p, d * p}, motion.T_columns, d, n, p);
+    const auto add_to_b = [&](int u) {   // J_up + J_ub T
+        of_blocks().add_from_right(blocks_.of(u, b).data(), blocks_.size(u) * p, motion.T_columns.data(),
+                                   of_T, false, blocks_.of(u, above).data());
     };
     for (const int v : plan_->coupled[static_cast<std::size_t>(b)]) {
         if (v == above) continue;
-        add(blocks_.of(above, v), from_b(v));
-        add(blocks_.of(v, above), to_b(v));
+        add_from_b(v);
+        add_to_b(v);
     }
-    add(blocks_.of(above, above), to_b(above));
-    add(blocks_.of(b, above), to_b(b));   // J_bp + J_bb T
-    add(blocks_.of(above, above), from_b(above));
-    add(blocks_.of(above, b), from_b(b));   // J_pb + T^T J_bb
+    add_to_b(above);
+    add_to_b(b);   // before what is coupled with b goes on: J_bp + J_bb T
+    add_from_b(above);
+    add_from_b(b);
 }
 
 bool TreeTangent::eliminate(int b)
@@ -169,24 +174,37 @@ bool TreeTangent::eliminate(int b)
     Eliminated& gone = gone_[static_cast<std::size_t>(b)];
     const int p = rule_.degree, d = blocks_.size(b), f = motion.f;
     if (plan_->parent[static_cast<std::size_t>(b)] != world) pass_to_parent(b);
-    gone.E.assign(coupled.size(), {});
-    gone.W.assign(coupled.size(), {});
+    for (auto* blocks : {&gone.E, &gone.Et, &gone.W}) blocks->resize(coupled.size());
     if (f == 0) return true;
-    const Numbers Jz = from_right({blocks_.of(b, b), d * p, d * p}, motion.z_columns, d, f, p);
-    gone.D.A = from_left(motion.z_rows, d, f, p, {Jz, d * p, f * p});
-    if (!gone.D.factorise(f * p)) return false;
+    const lanes::BlockSize of_z{d, f, p};
+    const auto times_z = [&](int u, Numbers& out) {
+        out.assign(static_cast<std::size_t>(blocks_.size(u) * p * f * p), 0.0);
+        of_blocks().add_from_right(blocks_.of(u, b).data(), blocks_.size(u) * p, motion.z_columns.data(),
+                                   of_z, false, out.data());
+    };
+    Numbers Jz;
+    times_z(b, Jz);
+    gone.D.A.assign(static_cast<std::size_t>(f * p * f * p), 0.0);
+    of_blocks().add_from_left(motion.z_rows.data(), of_z, Jz.data(), f * p, gone.D.A.data(), f * p);
+    if (!gone.D.factorise(of_blocks(), f * p)) return false;
     for (std::size_t k = 0; k < coupled.size(); ++k) {
-        const int v = coupled[k], n = blocks_.size(v);
-        gone.E[k] = from_right({blocks_.of(v, b), n * p, d * p}, motion.z_columns, d, f, p);
-        gone.W[k] = from_left(motion.z_rows, d, f, p, {blocks_.of(b, v), d * p, n * p});
-        gone.D.solve(gone.W[k].data(), n * p);
+        const int columns = blocks_.size(coupled[k]) * p;
+        times_z(coupled[k], gone.E[k]);
+        gone.Et[k].resize(gone.E[k].size());
+        for (int r = 0; r < columns; ++r)
+            for (int i = 0; i < f * p; ++i) gone.Et[k][i * columns + r] = gone.E[k][r * f * p + i];
+        gone.W[k].assign(static_cast<std::size_t>(f * p * columns), 0.0);
+        of_blocks().add_from_left(motion.z_rows.data(), of_z, blocks_.of(b, coupled[k]).data(), columns,
+                                  gone.W[k].data(), columns);
+        gone.D.solve(of_blocks(), gone.W[k].data(), columns);
     }
     const bool is_apart = is_point_of_rotors(tables_, b);
     for (std::size_t k = 0; k < coupled.size(); ++k)
         for (std::size_t l = 0; l < coupled.size(); ++l)
             if (k == l || !is_apart)
-                subtract_product(blocks_.of(coupled[k], coupled[l]), gone.E[k], gone.W[l],
-                                 blocks_.size(coupled[k]) * p, f * p, blocks_.size(coupled[l]) * p);
+                of_blocks().subtract_product(blocks_.of(coupled[k], coupled[l]).data(), gone.E[k].data(),
+                                             gone.W[l].data(), blocks_.size(coupled[k]) * p, f * p,
+                                             blocks_.size(coupled[l]) * p);
     return true;
 }
 
@@ -194,7 +212,8 @@ bool TreeTangent::factorise(const WindowLayout& layout, const lanes::Values& sta
                             const lanes::Values& nodes, TangentSlopes& slopes)
 {
     const bool has_first_row = rule_.points == Points::lobatto;
-    const NodeGradients gradients{tables_, *pattern_, start, nodes, width_, rule_.degree, has_first_row};
+    const NodeGradients gradients{tables_,           *pattern_,    start,        nodes,
+                                  functions_->width, rule_.degree, has_first_row};
     blocks_.clear();
     add_mass(layout.h(0));
     add_loads(layout, nodes, slopes.loads);
@@ -215,19 +234,18 @@ void TreeTangent::go_inwards(int b)
     const Eliminated& gone = gone_[static_cast<std::size_t>(b)];
     const std::vector<int>& coupled = plan_->coupled[static_cast<std::size_t>(b)];
     const int p = rule_.degree, d = blocks_.size(b), above = plan_->parent[static_cast<std::size_t>(b)];
-    const Numbers own(right_.begin() + blocks_.first(b), right_.begin() + blocks_.first(b) + d * p);
-    if (above != world) {
-        const Numbers passed = from_left(motion.T_rows, d, blocks_.size(above), p, {own, d * p, 1});
-        for (std::size_t i = 0; i < passed.size(); ++i) right_[blocks_.first(above) + i] += passed[i];
-    }
+    const double* own = right_.data() + blocks_.first(b);
+    if (above != world)
+        of_blocks().add_from_right(own, 1, motion.T_rows.data(), {d, blocks_.size(above), p}, false,
+                                   right_.data() + blocks_.first(above));
     if (motion.f == 0) return;
-    Numbers theta = from_left(motion.z_rows, d, motion.f, p, {own, d * p, 1});
-    gone.D.solve(theta.data(), 1);
+    theta_.assign(static_cast<std::size_t>(motion.f * p), 0.0);
+    of_blocks().add_from_right(own, 1, motion.z_rows.data(), {d, motion.f, p}, false, theta_.data());
+    gone.D.solve(of_blocks(), theta_.data(), 1);
     for (std::size_t k = 0; k < coupled.size(); ++k)
-        for (int r = 0; r < blocks_.size(coupled[k]) * p; ++r)
-            for (std::size_t i = 0; i < theta.size(); ++i)
-                right_[blocks_.first(coupled[k]) + r] -= gone.E[k][r * theta.size() + i] * theta[i];
-    std::ranges::copy(theta, left_.begin() + blocks_.first(b));
+        of_blocks().subtract_product(right_.data() + blocks_.first(coupled[k]), theta_.data(),
+                                     gone.Et[k].data(), 1, motion.f * p, blocks_.size(coupled[k]) * p);
+    std::ranges::copy(theta_, left_.begin() + blocks_.first(b));
 }
 
 void TreeTangent::go_outwards(int b, const lanes::Values& nodes)
@@ -236,25 +254,18 @@ void TreeTangent::go_outwards(int b, const lanes::Values& nodes)
     const Eliminated& gone = gone_[static_cast<std::size_t>(b)];
     const std::vector<int>& coupled = plan_->coupled[static_cast<std::size_t>(b)];
     const int p = rule_.degree, d = blocks_.size(b), above = plan_->parent[static_cast<std::size_t>(b)];
-    const int n = above == world ? 0 : blocks_.size(above);
     double* own = left_.data() + blocks_.first(b);
-    Numbers theta(own, own + motion.f * p);
-    for (std::size_t k = 0; motion.f > 0 && k < coupled.size(); ++k) {
-        const int columns = blocks_.size(coupled[k]) * p;
-        const double* y = left_.data() + blocks_.first(coupled[k]);
-        for (std::size_t r = 0; r < theta.size(); ++r)
-            for (int c = 0; c < columns; ++c) theta[r] -= gone.W[k][r * columns + c] * y[c];
-    }
+    theta_.assign(own, own + motion.f * p);
+    for (std::size_t k = 0; motion.f > 0 && k < coupled.size(); ++k)
+        of_blocks().subtract_times(theta_.data(), gone.W[k].data(), motion.f * p,
+                                   blocks_.size(coupled[k]) * p, left_.data() + blocks_.first(coupled[k]));
     std::fill_n(own, d * p, 0.0);
-    for (int i = 0; i < d; ++i)
-        for (int l = 0; l < p; ++l) {
-            double& y = own[i * p + l];
-            for (int k = 0; k < motion.f; ++k)
-                y += motion.z_columns[(i * motion.f + k) * p + l] * theta[k * p + l];
-            for (int k = 0; k < n; ++k)
-                y += motion.T_columns[(i * n + k) * p + l] * left_[blocks_.first(above) + k * p + l];
-            if (b < first_loop()) nodes.step[(tables_.bodies[b].first + i) * width_ + l] = y;
-        }
+    of_blocks().add_from_right(theta_.data(), 1, motion.z_columns.data(), {motion.f, d, p}, true, own);
+    if (above != world)
+        of_blocks().add_from_right(left_.data() + blocks_.first(above), 1, motion.T_columns.data(),
+                                   {blocks_.size(above), d, p}, true, own);
+    for (int i = 0; b < first_loop() && i < d; ++i)
+        std::copy_n(own + i * p, p, nodes.step + (tables_.bodies[b].first + i) * functions_->width);
 }
 
 void TreeTangent::propose(const lanes::Values& nodes)
@@ -265,7 +276,7 @@ void TreeTangent::propose(const lanes::Values& nodes)
         for (int i = 0; i < blocks_.size(b); ++i)
             for (int A = 0; A < p; ++A)
                 right_[blocks_.first(b) + i * p + A] =
-                    -nodes.rows[(tables_.bodies[b].first + i) * width_ + A];
+                    -nodes.rows[(tables_.bodies[b].first + i) * functions_->width + A];
     for (const int u : plan_->order) go_inwards(u);
     for (std::size_t i = plan_->order.size(); i-- > 0;) go_outwards(plan_->order[i], nodes);
 }

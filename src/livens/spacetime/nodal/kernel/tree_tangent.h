@@ -3,7 +3,7 @@
 // tangent", Stiff loads).
 #pragma once
 
-#include <map>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -20,6 +20,7 @@ public:
     /// `sizes`: numbers at a node; p nodes.
     void resize(const std::vector<int>& sizes, int p);
     void clear();
+    /// Stays where it is until resize().
     Numbers& of(int u, int v);
     int size(int u) const { return sizes_[static_cast<std::size_t>(u)]; }
     /// Where its numbers begin, and those of the one behind the last.
@@ -29,13 +30,13 @@ public:
 private:
     int p_ = 0;
     std::vector<int> sizes_, first_;
-    std::map<std::pair<int, int>, Numbers> blocks_;
+    std::vector<std::deque<std::pair<int, Numbers>>> rows_;   // of each, few others
 };
 
 /// The tangent of KernelTangent, all nodes of a body together, from the leaves inwards.
 class TreeTangent {
 public:
-    TreeTangent(const ModelTables& tables, const ElementRule& rule, int width);
+    TreeTangent(const ModelTables& tables, const ElementRule& rule, const lanes::Functions* functions);
 
     /// For the rows of this pattern.
     void use(const std::shared_ptr<const RowPattern>& pattern);
@@ -46,10 +47,10 @@ public:
 
 private:
     /// What is left of an unknown when it is gone: D = z^T J z, and for each unknown that it is coupled with
-    /// J z and D^-1 z^T J.
+    /// J z, its transpose, and D^-1 z^T J.
     struct Eliminated {
         SquareFactor D;
-        std::vector<Numbers> E, W;
+        std::vector<Numbers> E, Et, W;
     };
 
     void add_mass(double h);
@@ -60,17 +61,18 @@ private:
     void pass_to_parent(int body);
     void go_inwards(int unknown);
     void go_outwards(int unknown, const lanes::Values& nodes);
+    const lanes::BlockFunctions& of_blocks() const { return *functions_->blocks; }
     int first_loop() const { return tables_.n_bodies(); }
 
     const ModelTables& tables_;
     const ElementRule& rule_;
-    int width_;
+    const lanes::Functions* functions_;
     std::shared_ptr<const RowPattern> pattern_;
     std::optional<TreePlan> plan_;
     TreeBlocks blocks_;
     std::vector<JointMotion> motions_;
     std::vector<Eliminated> gone_;
-    Numbers right_, left_;
+    Numbers right_, left_, theta_;
 };
 
 }   // namespace livens::inline spacetime_internal

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Products and factors of dense blocks whose rows and columns are numbers at p nodes: (i, A) is row i p + A.
+// Nodes are few, so lanes go over columns, and over nodes where each has its own factor.
+#pragma once
+
+#include "livens/dynamics/lanes/lane_arithmetic.h"
+#include "livens/spacetime/elements/kernel_functions.h"
+
+namespace livens::lanes {
+namespace {
+
+/// Of registers that hold eight, half: blocks are small.
+constexpr int part = LIVENS_REGISTER < 4 ? LIVENS_REGISTER : 4;
+
+template <int W>
+LIVENS_INLINE Lanes<W> load_anywhere(const double* x)
+{
+    Lanes<W> v;
+    __builtin_memcpy(&v, x, sizeof v);
+    return v;
+}
+
+template <int W>
+LIVENS_INLINE void store_anywhere(double* x, const Lanes<W>& v)
+{
+    __builtin_memcpy(x, &v, sizeof v);
+}
+
+/// Factors a_k of rows x_k, that many, apart as said.
+struct Terms {
+    const double* a;
+    int apart;
+    const double* x;
+    int next, n;
+};
+
+template <int W>
+LIVENS_INLINE void add_terms(double* y, double sign, const Terms& of, int first)
+{
+    Lanes<W> sums = load_anywhere<W>(y + first);
+    for (int k = 0; k < of.n; ++k)
+        sums += sign * of.a[k * of.apart] * load_anywhere<W>(of.x + k * of.next + first);
+    store_anywhere(y + first, sums);
+}
+
+/// y += sign sum_k a_k x_k, rows of `columns` numbers.
+LIVENS_INLINE void add_rows(double* y, double sign, const Terms& of, int columns)
+{
+    int c = 0;
+    for (; c + 4 * part <= columns; c += 4 * part) add_terms<4 * part>(y, sign, of, c);
+    for (; c + part <= columns; c += part) add_terms<part>(y, sign, of, c);
+    for (; c < columns; ++c) add_terms<1>(y, sign, of, c);
+}
+
+void add_from_left(const double* M, const BlockSize& of, const double* J, int columns, double* out, int apart)
+{
+    for (int k = 0; k < of.f; ++k)
+        for (int A = 0; A < of.p; ++A)
+            add_rows(out + (k * of.p + A) * apart, 1,
+                     {M + k * of.p + A, of.f * of.p, J + A * columns, of.p * columns, of.n}, columns);
+}
+
+/// The last of these lanes may go over some that others have had.
+template <int W>
+LIVENS_INLINE void add_at_nodes(const double* x, const double* M, int n, int to_next, int p, double* out)
+{
+    Lanes<W> sums[(18 + W - 1) / W];   // degrees that have lanes
+    int count = 0;
+    for (int B = 0; B < p; B += W, ++count) {
+        const int first = B + W <= p ? B : p - W;
+        sums[count] = load_anywhere<W>(out + first);
+        for (int j = 0; j < n; ++j)
+            sums[count] += load_anywhere<W>(x + j * p + first) * load_anywhere<W>(M + j * to_next + first);
+    }
+    for (int B = 0, i = 0; B < p; B += W, ++i) store_anywhere(out + (B + W <= p ? B : p - W), sums[i]);
+}
+
+template <int W>
+LIVENS_INLINE void add_all_from_right(const double* J, int rows, const double* M, const BlockSize& of,
+                                      bool transposed, double* out)
+{
+    const int to_next = transposed ? of.p : of.f * of.p, to_other = transposed ? of.n * of.p : of.p;
+    for (int r = 0; r < rows; ++r)
+        for (int k = 0; k < of.f; ++k)
+            add_at_nodes<W>(J + r * of.n * of.p, M + k * to_other, of.n, to_next, of.p,
+                            out + (r * of.f + k) * of.p);
+}
+
+void add_from_right(const double* J, int rows, const double* M, const BlockSize& of, bool transposed,
+                    double* out)
+{
+    if (of.p >= part) return add_all_from_right<part>(J, rows, M, of, transposed, out);
+    if (of.p >= 2) return add_all_from_right<2>(J, rows, M, of, transposed, out);
+    for (int r = 0; r < rows; ++r)
+        for (int k = 0; k < of.f; ++k)
+            for (int j = 0; j < of.n; ++j)
+                out[r * of.f + k] += J[r * of.n + j] * (transposed ? M[k * of.n + j] : M[j * of.f + k]);
+}
+
+void subtract_product(double* to, const double* a, const double* b, int rows, int inner, int columns)
+{
+    for (int r = 0; r < rows; ++r)
+        add_rows(to + r * columns, -1, {a + r * inner, 1, b, columns, inner}, columns);
+}
+
+void subtract_times(double* y, const double* A, int rows, int columns, const double* x)
+{
+    for (int r = 0; r < rows; ++r) {
+        const double* a = A + r * columns;
+        Lanes<part> sums = all<part>(0);
+        int c = 0;
+        for (; c + part <= columns; c += part)
+            sums += load_anywhere<part>(a + c) * load_anywhere<part>(x + c);
+        double s = sum(sums);
+        for (; c < columns; ++c) s += a[c] * x[c];
+        y[r] -= s;
+    }
+}
+
+bool factorise_square(double* A, int* exchanged, int n)
+{
+    for (int k = 0; k < n; ++k) {
+        int pivot = k;
+        for (int i = k + 1; i < n; ++i)
+            if (__builtin_fabs(A[i * n + k]) > __builtin_fabs(A[pivot * n + k])) pivot = i;
+        exchanged[k] = pivot;
+        if (!(__builtin_fabs(A[pivot * n + k]) > 0) || !__builtin_isfinite(A[pivot * n + k])) return false;
+        for (int j = 0; pivot != k && j < n; ++j) {
+            const double kept = A[k * n + j];
+            A[k * n + j] = A[pivot * n + j];
+            A[pivot * n + j] = kept;
+        }
+        const double inverse = 1 / A[k * n + k];
+        for (int i = k + 1; i < n; ++i) {
+            A[i * n + k] *= inverse;
+            add_rows(A + i * n + k + 1, -1, {A + i * n + k, 1, A + k * n + k + 1, n, 1}, n - k - 1);
+        }
+    }
+    return true;
+}
+
+void solve_square(const double* A, const int* exchanged, int n, double* x, int columns)
+{
+    for (int k = 0; k < n; ++k)
+        for (int c = 0; exchanged[k] != k && c < columns; ++c) {
+            const double kept = x[k * columns + c];
+            x[k * columns + c] = x[exchanged[k] * columns + c];
+            x[exchanged[k] * columns + c] = kept;
+        }
+    const auto take_off = [&](int i, int first, int count) __attribute__((always_inline))
+    {
+        const double* a = A + i * n + first;
+        if (columns == 1) return subtract_times(x + i, a, 1, count, x + first);
+        add_rows(x + i * columns, -1, {a, 1, x + first * columns, columns, count}, columns);
+    };
+    for (int i = 1; i < n; ++i) take_off(i, 0, i);
+    for (int i = n; i-- > 0;) {
+        take_off(i, i + 1, n - i - 1);
+        const double inverse = 1 / A[i * n + i];
+        for (int c = 0; c < columns; ++c) x[i * columns + c] *= inverse;
+    }
+}
+
+constexpr BlockFunctions blocks_of{add_from_left,  add_from_right,   subtract_product,
+                                   subtract_times, factorise_square, solve_square};
+
+}   // namespace
+}   // namespace livens::lanes
