@@ -34,26 +34,52 @@ struct Terms {
     int next, n;
 };
 
-template <int W>
-LIVENS_INLINE void add_terms(double* y, double sign, const Terms& of, int first)
+/// The columns from y on, R < 16 of them or 16, of y += sign sum_k a_k x_k: all in registers at once.
+template <int R>
+LIVENS_INLINE void add_terms(double* y, double sign, const Terms& of, const double* x)
 {
-    Lanes<W> sums = load_anywhere<W>(y + first);
-    for (int k = 0; k < of.n; ++k)
-        sums += sign * of.a[k * of.apart] * load_anywhere<W>(of.x + k * of.next + first);
-    store_anywhere(y + first, sums);
+    constexpr int fours = R / 4, twos = R % 4 / 2, first_two = 4 * fours, last = R - 1;
+    Lanes<4> four[fours + 1];
+    Lanes<2> two = all<2>(0);
+    double one = 0;
+    for (int i = 0; i < fours; ++i) four[i] = load_anywhere<4>(y + 4 * i);
+    if constexpr (twos > 0) two = load_anywhere<2>(y + first_two);
+    if constexpr (R % 2 > 0) one = y[last];
+    for (int k = 0; k < of.n; ++k, x += of.next) {
+        const double a = sign * of.a[k * of.apart];
+        for (int i = 0; i < fours; ++i) four[i] += a * load_anywhere<4>(x + 4 * i);
+        if constexpr (twos > 0) two += a * load_anywhere<2>(x + first_two);
+        if constexpr (R % 2 > 0) one += a * x[last];
+    }
+    for (int i = 0; i < fours; ++i) store_anywhere(y + 4 * i, four[i]);
+    if constexpr (twos > 0) store_anywhere(y + first_two, two);
+    if constexpr (R % 2 > 0) y[last] = one;
 }
 
-/// y += sign sum_k a_k x_k, rows of `columns` numbers.
-LIVENS_INLINE void add_rows(double* y, double sign, const Terms& of, int columns)
+/// y += sign sum_k a_k x_k, rows of 16 n + R numbers.
+template <int R>
+void add_rows_of(double* y, double sign, const Terms& of, int columns)
 {
-    int c = 0;
-    for (; c + 4 * part <= columns; c += 4 * part) add_terms<4 * part>(y, sign, of, c);
-    for (; c + part <= columns; c += part) add_terms<part>(y, sign, of, c);
-    for (; c < columns; ++c) add_terms<1>(y, sign, of, c);
+    const double* x = of.x;
+    for (; columns >= 16; columns -= 16, y += 16, x += 16) add_terms<16>(y, sign, of, x);
+    if constexpr (R > 0) add_terms<R>(y, sign, of, x);
+}
+
+using AddRows = void (*)(double* y, double sign, const Terms& of, int columns);
+
+/// For rows of so many numbers.
+LIVENS_INLINE AddRows rows_of(int columns)
+{
+    static constexpr AddRows by_rest[16] = {
+        add_rows_of<0>,  add_rows_of<1>,  add_rows_of<2>,  add_rows_of<3>, add_rows_of<4>,  add_rows_of<5>,
+        add_rows_of<6>,  add_rows_of<7>,  add_rows_of<8>,  add_rows_of<9>, add_rows_of<10>, add_rows_of<11>,
+        add_rows_of<12>, add_rows_of<13>, add_rows_of<14>, add_rows_of<15>};
+    return by_rest[columns % 16];
 }
 
 void add_from_left(const double* M, const BlockSize& of, const double* J, int columns, double* out, int apart)
 {
+    const AddRows add_rows = rows_of(columns);
     for (int k = 0; k < of.f; ++k)
         for (int A = 0; A < of.p; ++A)
             add_rows(out + (k * of.p + A) * apart, 1,
@@ -99,6 +125,7 @@ void add_from_right(const double* J, int rows, const double* M, const BlockSize&
 
 void subtract_product(double* to, const double* a, const double* b, int rows, int inner, int columns)
 {
+    const AddRows add_rows = rows_of(columns);
     for (int r = 0; r < rows; ++r)
         add_rows(to + r * columns, -1, {a + r * inner, 1, b, columns, inner}, columns);
 }
@@ -131,6 +158,7 @@ bool factorise_square(double* A, int* exchanged, int n)
             A[pivot * n + j] = kept;
         }
         const double inverse = 1 / A[k * n + k];
+        const AddRows add_rows = rows_of(n - k - 1);
         for (int i = k + 1; i < n; ++i) {
             A[i * n + k] *= inverse;
             add_rows(A + i * n + k + 1, -1, {A + i * n + k, 1, A + k * n + k + 1, n, 1}, n - k - 1);
@@ -147,6 +175,7 @@ void solve_square(const double* A, const int* exchanged, int n, double* x, int c
             x[k * columns + c] = x[exchanged[k] * columns + c];
             x[exchanged[k] * columns + c] = kept;
         }
+    const AddRows add_rows = rows_of(columns);
     const auto take_off = [&](int i, int first, int count) __attribute__((always_inline))
     {
         const double* a = A + i * n + first;
