@@ -163,6 +163,30 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
     close_ends(model, problem, start_of(time), end_of(time), options.initial);   // throws
 }
 
+/// Unknown numbers: those of the problem itself, before any is looked for.
+void check_unknowns(const Problem& problem)
+{
+    for (const UnknownNumber& number : problem.unknowns.numbers) {
+        const std::string path = "unknown[" + number.name + "]", named = "the unknown '" + number.name + "'";
+        if (!std::isfinite(number.guess))
+            throw InputError({"not-finite", path, named + " has no number as its guess",
+                              to_text(number.guess), "a finite number", "", ""});
+        if (!(number.low < number.high))
+            throw InputError({"unknown-bounds", path, named + " has no room between its bounds",
+                              "low = " + to_text(number.low) + ", high = " + to_text(number.high),
+                              "low < high", "", "give bounds between which it may be, or none"});
+        if (!(number.guess >= number.low && number.guess <= number.high))
+            throw InputError({"unknown-guess", path, named + " is guessed outside of its bounds",
+                              to_text(number.guess), to_text(number.low) + " to " + to_text(number.high), "",
+                              "guess a number between the bounds, or widen them"});
+        if (problem.conditions.components.empty())
+            throw InputError({"unknown-march", path, named + " stands where nothing decides it", "", "",
+                              "conditions by component at both ends of time decide unknown numbers; a march "
+                              "from a state has none to spare",
+                              "give conditions by component, one more for each unknown"});
+    }
+}
+
 void check_conditions(const Model& model, const Conditions& given, const Method& method)
 {
     const auto is_at = [&](const State& state, Known known, const char* path) {
@@ -210,6 +234,7 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
         throw InputError({"no-bodies", "body", "a model needs at least one body", "", "", "", "add a body"});
     refuse_rotors(model, problem.conditions, method);
     refuse_special_rows(model, method);
+    check_unknowns(problem);
     if (problem.conditions.components.empty())
         check_conditions(model, problem.conditions, method);
     else

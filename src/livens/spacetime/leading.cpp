@@ -13,7 +13,6 @@
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/march/components.h"
 #include "livens/spacetime/march/windows.h"
-#include "livens/spacetime/nodal/window.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -50,8 +49,9 @@ Guess secant(const Guess& before, const Guess& last, double ahead)
 
 class Leader {
 public:
-    Leader(const Model& model, const Ends& ends, const TimeMesh& mesh, int degree, bool from_start)
-        : model_(model), ends_(ends), mesh_(mesh), rule_(lobatto_rule(degree)), from_start_(from_start)
+    Leader(const NumberedProblem& problem, int degree, bool from_start)
+        : problem_(problem), model_(problem.model()), ends_(problem.ends()), mesh_(problem.mesh()),
+          rule_(lobatto_rule(degree)), from_start_(from_start), numbers_{problem.guesses(), {}}
     {}
 
     Leading go(const Guess& begin)
@@ -117,8 +117,18 @@ private:
 
     Guess solved_between(const Ends& ends, const Guess& guess)
     {
+        if (problem_.size() > 0) {
+            const NumberedProblem led(model_, ends, mesh_, problem_.unknowns());
+            UnknownsWindow window(led, numbers_.values, rule_, true, numbers_);
+            return motion_of(window, guess);
+        }
         const ModelTables tables(model_, ends.independent);
         NodalWindow window(tables, mesh_, ends, rule_);
+        return motion_of(window, guess);
+    }
+
+    Guess motion_of(Window& window, const Guess& guess) const
+    {
         WindowOptions options;
         options.length = 0;
         options.may_split = false;
@@ -132,9 +142,10 @@ private:
         solve_windows(window, mesh, options, report);
         if (!report.converged()) return {};
         const auto motion = std::make_shared<Motion>(window.take_motion());
-        return [motion](double t) { return motion->at(t); };
+        return [motion, mesh](double t) { return motion->at(carried_to(mesh, t, motion->mesh)); };
     }
 
+    const NumberedProblem& problem_;
     const Model& model_;
     const Ends& ends_;
     const TimeMesh& mesh_;
@@ -142,14 +153,14 @@ private:
     bool from_start_;
     State arrival_;
     std::vector<double> arrived_;   // of conditions by component
+    FoundNumbers numbers_;          // of the last solution
 };
 
 }   // namespace
 
-Leading lead(const Model& model, const Ends& ends, const TimeMesh& mesh, int degree, const Guess& begin,
-             bool from_start)
+Leading lead(const NumberedProblem& problem, int degree, const Guess& begin, bool from_start)
 {
-    return Leader(model, ends, mesh, degree, from_start).go(begin);
+    return Leader(problem, degree, from_start).go(begin);
 }
 
 }   // namespace livens::inline spacetime_internal

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "livens/spacetime/march/ends.h"
-#include "livens/spacetime/march/window.h"
+#include "livens/spacetime/nodal/unknowns_window.h"
 #include "livens/time/time_mesh.h"
 
 namespace livens::inline spacetime_internal {
@@ -19,7 +19,6 @@ struct Leading {
 /// one: the other end goes from what that motion has there to what is stated, in steps that grow while they
 /// succeed and are halved where they fail, each begun with what two motions before foretell. `from_start`:
 /// the end of time is led, else its start.
-Leading lead(const Model& model, const Ends& ends, const TimeMesh& mesh, int degree, const Guess& begin,
-             bool from_start);
+Leading lead(const NumberedProblem& problem, int degree, const Guess& begin, bool from_start);
 
 }   // namespace livens::inline spacetime_internal

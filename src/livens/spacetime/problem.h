@@ -4,7 +4,10 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <memory>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -57,6 +60,37 @@ struct Conditions {
     std::vector<Condition> components{};
 };
 
+/// A number in a model, in its conditions or in their times that is to be found with the motion.
+struct UnknownNumber {
+    std::string name;   ///< "damping"
+    double guess = 0;
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+};
+
+/// What is solved where unknown numbers have some values.
+struct Rebuilt {
+    std::shared_ptr<const Model> model;
+    std::vector<Condition> components;   ///< of this model, in the order of the others
+    double start = 0, end = 0;           ///< s
+};
+
+/// As many more conditions by component decide them. Bodies, rows and loads are the same for all values.
+struct UnknownNumbers {
+    std::vector<UnknownNumber> numbers{};
+    /// Throws InputError for values that make no model. The problem itself is that of the guesses.
+    std::function<Rebuilt(std::span<const double> values)> rebuild{};
+
+    bool is_empty() const { return numbers.empty(); }
+};
+
+/// What was found of unknown numbers: their values, and the model that these make, to which the motion
+/// belongs.
+struct FoundNumbers {
+    std::vector<double> values{};
+    Rebuilt rebuilt{};
+};
+
 struct Problem {
     Conditions conditions;
     /// A motion that is about right, for conditions at both ends; empty: one is made from the conditions.
@@ -67,6 +101,7 @@ struct Problem {
     /// What was found of the model when it was solved before, for less work; null: nothing, and nothing is
     /// kept. One thread at a time.
     std::shared_ptr<Prepared> prepared{};
+    UnknownNumbers unknowns{};
     /// Whether conditions at both ends determine the motion is asked of its equations.
     bool is_determination_asked = true;
     /// Between both ends no other motion is looked for than the one that is guessed.

@@ -79,6 +79,24 @@ Solution solve_all_time(const Model& model, const Problem& problem, const Time& 
                               : solve_phase(model, problem, time, method, options);
 }
 
+/// The model that the motion belongs to.
+const Model& solved(const Model& model, const Solution& solution)
+{
+    return solution.numbers.rebuilt.model != nullptr ? *solution.numbers.rebuilt.model : model;
+}
+
+/// The problem that begins where unknown numbers were found.
+Problem with_found(const Problem& problem, const Solution& solution)
+{
+    if (solution.numbers.rebuilt.model == nullptr) return problem;
+    Problem found = problem;
+    found.prepared = nullptr;
+    found.conditions.components = solution.numbers.rebuilt.components;
+    for (std::size_t i = 0; i < solution.numbers.values.size(); ++i)
+        found.unknowns.numbers[i].guess = solution.numbers.values[i];
+    return with_prepared(found);
+}
+
 /// Over events growth is known when all else is.
 void refuse_rounding(const Model& model, Solution& solution)
 {
@@ -123,7 +141,7 @@ Solution spacetime_internal::solve_unjudged(const Model& model, const Problem& s
         solution.report.message = "stopped as asked before the first element was solved";
         return solution;
     }
-    if (!solution.motion.mesh.ends.empty()) lower_orders(model, solution.motion);
+    if (!solution.motion.mesh.ends.empty()) lower_orders(solved(model, solution), solution.motion);
     return solution;
 }
 
@@ -146,15 +164,17 @@ Solution solve(const Model& model, const Problem& stated, const Time& time, cons
     if (solution.cannot_begin) throw InputError(std::move(*solution.cannot_begin));
     if (!options.judge || solution.motion.mesh.ends.empty()) return solution;
     // The estimate comes first: whether rounding spoils the accuracy, and what is suspect, follow from it.
-    estimate(model, problem, method, options, solution);
-    refuse_rounding(model, solution);
+    const Model& found = solved(model, solution);
+    const Problem judged = with_found(problem, solution);
+    estimate(found, judged, method, options, solution);
+    refuse_rounding(found, solution);
     std::function<bool()> goes_on;
     const int n = solution.motion.n_elements();
     if (options.progress)
         goes_on = [&] {
             return options.progress({n, n, solution.motion.end(), 0, solution.report.residual_norm});
         };
-    judge(model, problem, options, solution, goes_on);
+    judge(found, judged, options, solution, goes_on);
     return solution;
 }
 

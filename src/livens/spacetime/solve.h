@@ -39,8 +39,10 @@ struct Solution {
     /// Of conditions at both ends: how far the rounding of rows may move the motion, in lengths and rad.
     double moved_by_rounding = 0;
     double estimate_seconds = 0;   ///< that the second solution and the neighbouring motion took
-    /// Why the motion has no beginning, where that is a matter of the motion before it; solve() throws it.
+    /// Why the motion has no beginning, where that is a matter of the motion before it, or an unknown number
+    /// no value; solve() throws it.
     std::optional<Complaint> cannot_begin{};
+    FoundNumbers numbers{};
     /// Of a model with inertias along coordinates the same with their points, see WithRotors: what estimate()
     /// goes on from. Null: it has none.
     std::shared_ptr<Solution> with_rotors{};

@@ -23,7 +23,8 @@
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/mixed/window.h"
-#include "livens/spacetime/nodal/window.h"
+#include "livens/spacetime/nodal/unknowns_window.h"
+#include "livens/spacetime/unseen_number.h"
 #include "livens/stepping/stepping.h"
 
 namespace livens::inline spacetime_internal {
@@ -61,9 +62,10 @@ std::vector<double> instants(const TimeMesh& mesh, const Ends& ends, int first, 
 /// where that leads nowhere they are too long, and are divided.
 class Proposals {
 public:
-    Proposals(const Model& model, const Problem& problem, const TimeMesh& mesh, const Ends& ends,
-              const Method& method, const Window& window)
-        : model_(model), problem_(problem), mesh_(mesh), ends_(ends), method_(method), window_(window)
+    Proposals(const Problem& problem, const NumberedProblem& numbered, const Method& method,
+              const Window& window)
+        : model_(numbered.model()), problem_(problem), numbered_(numbered), mesh_(numbered.mesh()),
+          ends_(numbered.ends()), method_(method), window_(window)
     {}
 
     WindowOptions::Proposal operator()(int first, int last, int attempt)
@@ -102,7 +104,7 @@ private:
             const GuessFromEnds march = march_to_lead(model_, guessed_ends(), mesh_.ends, lead_);
             if (!march.motion) break;
             lead_ = march.next;
-            const Leading led = lead(model_, ends_, mesh_, degree, march.motion, march.from_start);
+            const Leading led = lead(numbered_, degree, march.motion, march.from_start);
             if (!led.motion) continue;
             told_ = "found by an end that was led, in " + std::to_string(led.steps) +
                     " steps, from where a march from the " + (march.from_start ? "start " : "end ") +
@@ -121,6 +123,7 @@ private:
 
     const Model& model_;
     const Problem& problem_;
+    const NumberedProblem& numbered_;
     const TimeMesh& mesh_;
     const Ends& ends_;
     const Method& method_;
@@ -275,6 +278,28 @@ void measure_at_solution(const ModelTables& tables, const Motion& motion, const 
         whole.equations().measure_condition(report, goes_on);
 }
 
+/// What is left once the motion is solved: it is taken, with condition numbers if they are asked for.
+void finish(const ModelTables& tables, Window& window, const Ends& ends, const Method& method,
+            bool with_condition, ConditionNumbersOfLast& last, Solution& solution)
+{
+    SolveReport& report = solution.report;
+    // A march forms no matrix of single elements, and where it divided some, not of all.
+    const bool is_whole = std::holds_alternative<Mixed>(method) || !ends.has_state();
+    if (with_condition && report.converged() && is_whole)
+        last.measure(report,
+                     [&](const auto& goes_on) { window.equations().measure_condition(report, goes_on); });
+    solution.unseen = window.monitor().take_unseen();
+    solution.motion = window.take_motion();
+    if (with_condition && report.converged() && !is_whole)
+        last.measure(report, [&](const auto& goes_on) {
+            measure_at_solution(tables, solution.motion, ends, rule_of(method), report, goes_on);
+        });
+    if (!last.is_stopped()) return;
+    report.status = SolveStatus::cancelled;
+    report.failed_at = solution.motion.end();
+    report.message = "stopped as asked while condition numbers were computed; the motion is complete";
+}
+
 Solution solve_by_windows(const Model& model, const Problem& problem, const TimeMesh& given, const Ends& ends,
                           const Method& method, const SolveOptions& options)
 {
@@ -285,16 +310,20 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     std::ranges::sort(mesh.required);
     const bool is_mixed = std::holds_alternative<Mixed>(method);
     const ModelTables tables(model, ends.independent, is_mixed, problem.prepared->pattern(model));
-    const auto make = [&] {
+    const NumberedProblem numbered(model, ends, mesh, problem.unknowns);
+    Solution solution;
+    const auto make = [&]() -> std::unique_ptr<Window> {
+        if (numbered.size() > 0)
+            return std::make_unique<UnknownsWindow>(numbered, numbered.guesses(), rule_of(method),
+                                                    options.look_at_laws, solution.numbers);
         return make_window(tables, mesh, ends, method, options.look_at_laws, problem.near);
     };
     std::unique_ptr<Window> window = make();
-    Solution solution;
     solution.method = method;
     SolveReport& report = solution.report;
     report.notes = ends.notes;
     WindowOptions w = options_of_mesh(model, ends, method, options);
-    Proposals proposals(model, problem, mesh, ends, method, *window);
+    Proposals proposals(problem, numbered, method, *window);
     w.propose = std::ref(proposals);
     solve_windows(*window, mesh, w, report);
     if (!ends.has_state()) {
@@ -312,22 +341,9 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     ConditionNumbersOfLast last(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
     if (!ends.has_state() && !is_mixed && problem.is_determination_asked && report.converged())
         solution.moved_by_rounding = refuse_undetermined(*window, last, report);
-    // A march forms no matrix of single elements, and where it divided some, not of all.
-    const bool is_whole = is_mixed || !ends.has_state();
-    if (options.condition && report.converged() && is_whole)
-        last.measure(report,
-                     [&](const auto& goes_on) { window->equations().measure_condition(report, goes_on); });
-    solution.unseen = window->monitor().take_unseen();
-    solution.motion = window->take_motion();
-    if (options.condition && report.converged() && !is_whole)
-        last.measure(report, [&](const auto& goes_on) {
-            measure_at_solution(tables, solution.motion, ends, rule_of(method), report, goes_on);
-        });
-    if (last.is_stopped()) {
-        report.status = SolveStatus::cancelled;
-        report.failed_at = solution.motion.end();
-        report.message = "stopped as asked while condition numbers were computed; the motion is complete";
-    }
+    if (!report.converged() && report.status != SolveStatus::cancelled)
+        solution.cannot_begin = why_unseen(numbered);
+    finish(tables, *window, ends, method, options.condition, last, solution);
     return solution;
 }
 

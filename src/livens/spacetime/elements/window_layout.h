@@ -32,6 +32,7 @@ struct WindowLayout {
     Points points = Points::lobatto;   ///< radau: one element, whose state is known at the first node
     bool X_first = true, P_first = true, X_last = false, P_last = false;
     bool are_momenta_unknown = false;   ///< those at both ends; conditions by component are rows instead
+    int n_numbers = 0;                  ///< of the model that are unknown beside them
 
     int n_elements() const { return static_cast<int>(times.size()) - 1; }
     int n_nodes() const { return n_elements() * degree + 1; }

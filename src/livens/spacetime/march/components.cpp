@@ -11,6 +11,7 @@
 #include "livens/base/text.h"
 #include "livens/solvers/dense.h"
 #include "livens/spacetime/march/end_point.h"
+#include "livens/spacetime/march/numbered.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -50,13 +51,23 @@ void place_about(const EndPoint& from, const ModelTables& tables, double rate, S
         for (double& value : y) value *= 0.5;
 }
 
+double unit_of(const Condition& condition, double length, double duration)
+{
+    const double unit = condition.quantity.is_angle() ? 1 : length;
+    return condition.quantity.is_rate() ? unit / duration : unit;
+}
+
 /// Derivatives of conditions by lengths, radians and rates times the duration along free motions at both
-/// ends, one row each, by their scales: numbers about 1, zero where joints hold a quantity.
+/// ends, one row each, by their scales: numbers about 1, zero where joints hold a quantity. Columns by
+/// unknown numbers follow, of the first conditions.
 DenseMatrix rows_at(const ModelTables& tables, const std::vector<Condition>& conditions,
-                    const std::array<const EndPoint*, 2>& points, double duration)
+                    const std::array<const EndPoint*, 2>& points, double duration,
+                    const DenseMatrix& by_numbers)
 {
     const int f = tables.freedoms(), m = static_cast<int>(conditions.size());
-    DenseMatrix rows(m, 4 * f);
+    DenseMatrix rows(m, 4 * f + by_numbers.cols);
+    for (int j = 0; j < by_numbers.cols; ++j)
+        for (int i = 0; i < std::min(m, by_numbers.rows); ++i) rows(i, 4 * f + j) = by_numbers(i, j);
     const std::vector<const StateQuantity*> quantities = quantities_of(conditions);
     for (const int end : {0, 1}) {
         const EndPoint& point = *points[end];
@@ -64,8 +75,7 @@ DenseMatrix rows_at(const ModelTables& tables, const std::vector<Condition>& con
         for (int i = 0; i < m; ++i) {
             const Condition& one = conditions[i];
             if (one.at == (end == 0 ? Condition::At::end : Condition::At::start)) continue;
-            double unit = one.quantity.is_angle() ? 1 : tables.length;
-            if (one.quantity.is_rate()) unit /= duration;
+            const double unit = unit_of(one, tables.length, duration);
             for (int j = 0; j < f; ++j) {
                 const double size = point.size_along(point.basis(), point.maps(), j) * unit;
                 rows(i, end * 2 * f + j) = D(i, j) / size;
@@ -121,7 +131,7 @@ std::string path_of(const Condition& condition)
 /// Judges conditions at a few places; what is dependent at all of them is so by itself.
 class Judgement {
 public:
-    Judgement(const ModelTables& tables, const Ends& ends)
+    Judgement(const ModelTables& tables, const Ends& ends, const UnknownNumbers& unknowns)
         : tables_(tables), ends_(ends), duration_(ends.end.t - ends.start.t), start_(tables), end_(tables)
     {
         are_placed_ = start_.place(ends.start) && end_.place(ends.end);
@@ -131,11 +141,14 @@ public:
                 at->emplace_back(tables);
                 place_about(at == &starts_ ? start_ : end_, tables, 1 / duration_, scatter, at->back());
             }
+        by_numbers_.assign(n_places, DenseMatrix(static_cast<int>(ends.components.size()), ends.n_numbers));
+        if (are_placed_ && ends.n_numbers > 0) differentiate_by_numbers(unknowns);
     }
 
     std::optional<Complaint> complaint() const
     {
-        const int needed = 2 * tables_.freedoms(), n = static_cast<int>(ends_.components.size());
+        const int needed = 2 * tables_.freedoms() + ends_.n_numbers;
+        const int n = static_cast<int>(ends_.components.size());
         if (!are_placed_) return {};
         if (std::optional<Complaint> why = why_dependent()) return why;
         if (n > needed) return too_many(needed, n);
@@ -149,8 +162,8 @@ private:
     {
         std::vector<Remainder> best;
         for (int place = 0; place < n_places; ++place) {
-            const DenseMatrix rows =
-                rows_at(tables_, conditions, {&starts_[place], &ends_about_[place]}, duration_);
+            const DenseMatrix rows = rows_at(tables_, conditions, {&starts_[place], &ends_about_[place]},
+                                             duration_, by_numbers_[place]);
             if (!all_finite(rows.a)) continue;   // a coordinate has no derivative there, or joints lock
             const std::vector<Remainder> here = remainders(rows);
             if (best.empty()) best = here;
@@ -160,6 +173,42 @@ private:
         // nothing can be said beforehand: solving tells
         if (best.empty()) best.assign(conditions.size(), {1, 1, {}});
         return best;
+    }
+
+    /// What conditions miss in rebuilt models, with bodies that are pulled onto the joints of these.
+    void differentiate_by_numbers(const UnknownNumbers& unknowns)
+    {
+        const TimeMesh mesh{{ends_.start.t, ends_.end.t}};
+        const NumberedProblem problem(*tables_.model, ends_, mesh, unknowns);
+        const std::vector<double> guesses = problem.guesses();
+        for (int j = 0; j < problem.size(); ++j)
+            for (const NumberedProblem::Sample& sample : problem.samples(j, guesses[j])) {
+                std::vector<double> values = guesses;
+                values[j] = sample.value;
+                add_sample(problem.at(values), j, sample.weight);
+            }
+    }
+
+    void add_sample(const NumberedProblem::Instance& other, int j, double weight)
+    {
+        const ModelTables tables(*other.rebuilt.model, ends_.independent);
+        for (int place = 0; place < n_places; ++place)
+            for (const bool is_end : {false, true}) {
+                EndPoint point(tables);
+                const EndPoint& at = (is_end ? ends_about_ : starts_)[place];
+                const bool is_placed = point.place(at.state());
+                for (std::size_t i = 0; i < ends_.components.size(); ++i) {
+                    const Condition& one = other.ends.components[i];
+                    if (one.at == (is_end ? Condition::At::start : Condition::At::end)) continue;
+                    const double sign = is_end || one.at == Condition::At::start ? 1 : -1;
+                    double value = is_placed ? point.value(one.quantity) : std::nan("");
+                    if (one.quantity.counts_turns())   // off by less than half a turn
+                        value = turned_to(value, at.value(ends_.components[i].quantity));
+                    const double stated = one.at == Condition::At::both ? 0 : one.value;
+                    by_numbers_[place](static_cast<int>(i), j) +=
+                        sign * weight * (value - stated) / unit_of(one, tables_.length, duration_);
+                }
+            }
     }
 
     static bool is_dependent(const Remainder& row)
@@ -221,6 +270,16 @@ private:
                 "leave it out, or change the mechanism"};
     }
 
+    std::string reason() const
+    {
+        std::string why = "the joints leave " + std::to_string(tables_.freedoms()) +
+                          " motions free, and each has a place and a rate to be known";
+        if (ends_.n_numbers == 1) why += "; the unknown number takes one more";
+        if (ends_.n_numbers > 1)
+            why += "; the " + std::to_string(ends_.n_numbers) + " unknown numbers take one more each";
+        return why;
+    }
+
     Complaint too_many(int needed, int n) const
     {
         return {"conditions-too-many",
@@ -228,8 +287,7 @@ private:
                 "too many conditions at the ends of time",
                 std::to_string(n),
                 std::to_string(needed),
-                "the joints leave " + std::to_string(needed / 2) +
-                    " motions free, and each has a place and a rate to be known",
+                reason(),
                 "leave out " + std::to_string(n - needed) + " of them"};
     }
 
@@ -241,8 +299,7 @@ private:
                 "too few conditions at the ends of time",
                 std::to_string(n),
                 std::to_string(needed),
-                "the joints leave " + std::to_string(needed / 2) +
-                    " motions free, and each has a place and a rate to be known",
+                reason(),
                 free.empty() ? "give more quantities" : "give for instance " + free};
     }
 
@@ -290,13 +347,15 @@ private:
     EndPoint start_, end_;
     bool are_placed_ = false;
     std::deque<EndPoint> starts_, ends_about_;
+    std::vector<DenseMatrix> by_numbers_;   // at each place
 };
 
 }   // namespace
 
-std::optional<Complaint> why_undetermined(const ModelTables& tables, const Ends& ends)
+std::optional<Complaint> why_undetermined(const ModelTables& tables, const Ends& ends,
+                                          const UnknownNumbers& unknowns)
 {
-    return Judgement(tables, ends).complaint();
+    return Judgement(tables, ends, unknowns).complaint();
 }
 
 }   // namespace livens::inline spacetime_internal

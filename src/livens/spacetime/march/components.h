@@ -28,9 +28,11 @@ double scale_of(const Condition& condition, double length, double duration);
 /// Where turns of an angle begin to be counted: at what is stated at the start, or at the stated bodies.
 double start_of_turns(const Ends& ends, const StateQuantity& quantity);
 
-/// Why conditions do not determine a motion of these joints: they must be twice the free motions, and none
-/// may follow from others. Judged at places about the guesses, where no chance makes them dependent.
-std::optional<Complaint> why_undetermined(const ModelTables& tables, const Ends& ends);
+/// Why conditions do not determine a motion of these joints, and unknown numbers: they must be twice the free
+/// motions and as many more as there are numbers, and none may follow from others. Judged at places about the
+/// guesses, where no chance makes them dependent.
+std::optional<Complaint> why_undetermined(const ModelTables& tables, const Ends& ends,
+                                          const UnknownNumbers& unknowns);
 
 /// A state near a guess that meets what is stated at an end, as far as it comes.
 State settled(const ModelTables& tables, const Ends& ends, Condition::At at, const State& guess);

@@ -25,6 +25,7 @@ struct Ends {
     /// stated at their end as far as they can. With the values that are led from, if they are.
     std::vector<Condition> components{};
     std::vector<double> led_values{};
+    int n_numbers = 0;             ///< unknown ones, which as many more components decide
     bool is_end_guessed = false;   ///< else the state at the end is made of that at the start
 
     /// What condition i is to be.

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "livens/diagnostics/estimate.h"
 #include "livens/multibody/model.h"
@@ -55,8 +56,9 @@ struct AcceptedElements {
 struct Uncertainty {
     double size =
         0;   ///< how far the rounding of rows may move the solution, by the motion inside of elements
-    std::string name;   ///< what moves most then: "body 'rod' near t = 0.5 s"
-    double moved = 0;   ///< that far, in lengths of the model or rad
+    std::string name;                ///< what moves most then: "body 'rod' near t = 0.5 s"
+    double moved = 0;                ///< that far, in lengths of the model or rad
+    std::vector<double> numbers{};   ///< how far it may move each unknown number, by its scale
 };
 
 /// What a family may know of single elements of a march forwards or backwards, beyond their equations. As it

@@ -23,33 +23,39 @@ Vector3 arm_between(const double* from, const double* to)
 
 }   // namespace
 
-void carry_rows(const BodyTables& bodies, const double* maps_from, const double* maps_to, double* y)
+void carry_rows(const Scaling& from, const Scaling& to, double* y)
 {
-    for (int b = 0; b < bodies.n_bodies(); ++b) {
-        const BodyTable& body = bodies[b];
-        if (body.dofs == 3) continue;   // its scale is the same everywhere
-        const double *from = maps_from + 12 * b, *to = maps_to + 12 * b;
+    for (int b = 0; b < from.bodies.n_bodies(); ++b) {
+        const BodyTable& body = from.bodies[b];
+        const double root = to.bodies[b].inverse_root_mass;
         double* row = y + body.first;
         const Vector3 force = (1 / body.inverse_root_mass) * Vector3{row[0], row[1], row[2]};
-        const Vector3 moment =
-            inverse_transposed(from) * Vector3{row[3], row[4], row[5]} + cross(arm_between(from, to), force);
+        if (root != body.inverse_root_mass)
+            for (int i = 0; i < 3; ++i) row[i] = root * force[i];
+        if (body.dofs == 3) continue;
+        const double *before = from.maps + 12 * b, *now = to.maps + 12 * b;
+        const Vector3 moment = inverse_transposed(before) * Vector3{row[3], row[4], row[5]} +
+                               cross(arm_between(before, now), force);
         for (int i = 0; i < 3; ++i)
-            row[3 + i] = to[3 * i] * moment[0] + to[3 * i + 1] * moment[1] + to[3 * i + 2] * moment[2];
+            row[3 + i] = now[3 * i] * moment[0] + now[3 * i + 1] * moment[1] + now[3 * i + 2] * moment[2];
     }
 }
 
-void carry_twists(const BodyTables& bodies, const double* maps_from, const double* maps_to, double* y)
+void carry_twists(const Scaling& from, const Scaling& to, double* y)
 {
-    for (int b = 0; b < bodies.n_bodies(); ++b) {
-        const BodyTable& body = bodies[b];
-        if (body.dofs == 3) continue;
-        const double *from = maps_from + 12 * b, *to = maps_to + 12 * b;
+    for (int b = 0; b < from.bodies.n_bodies(); ++b) {
+        const BodyTable& body = from.bodies[b];
+        const double root = to.bodies[b].inverse_root_mass;
         double* twist = y + body.first;
+        if (root != body.inverse_root_mass)
+            for (int i = 0; i < 3; ++i) twist[i] *= body.inverse_root_mass / root;
+        if (body.dofs == 3) continue;
+        const double *before = from.maps + 12 * b, *now = to.maps + 12 * b;
         Vector3 spin;
         for (int i = 0; i < 3; ++i)
-            spin[i] = from[i] * twist[3] + from[3 + i] * twist[4] + from[6 + i] * twist[5];
-        const Vector3 shift = (1 / body.inverse_root_mass) * cross(arm_between(from, to), spin);
-        const Vector3 scaled = transpose(inverse_transposed(to)) * spin;
+            spin[i] = before[i] * twist[3] + before[3 + i] * twist[4] + before[6 + i] * twist[5];
+        const Vector3 shift = (1 / root) * cross(arm_between(before, now), spin);
+        const Vector3 scaled = transpose(inverse_transposed(now)) * spin;
         for (int i = 0; i < 3; ++i) {
             twist[i] += shift[i];
             twist[3 + i] = scaled[i];

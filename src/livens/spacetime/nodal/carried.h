@@ -6,10 +6,16 @@
 
 namespace livens::inline spacetime_internal {
 
-/// y, scaled rows (scaled twists) of all bodies by the maps of one configuration, to those by the maps of
-/// another: in world axes forces and moments about the reference points (velocities and spins) stay what they
-/// are (docs/theory.md, "Newton's iteration").
-void carry_rows(const BodyTables& bodies, const double* maps_from, const double* maps_to, double* y);
-void carry_twists(const BodyTables& bodies, const double* maps_from, const double* maps_to, double* y);
+/// Where twists and rows are scaled: bodies, and their maps at a configuration.
+struct Scaling {
+    const BodyTables& bodies;
+    const double* maps;
+};
+
+/// y, scaled rows (scaled twists) of all bodies at one configuration, to those at another: in world axes
+/// forces and moments about the reference points (velocities and spins) stay what they are (docs/theory.md,
+/// "Newton's iteration").
+void carry_rows(const Scaling& from, const Scaling& to, double* y);
+void carry_twists(const Scaling& from, const Scaling& to, double* y);
 
 }   // namespace livens::inline spacetime_internal

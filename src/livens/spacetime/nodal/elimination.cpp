@@ -32,7 +32,8 @@ BlockStructure structure_of(const WindowLayout& layout, int freedoms)
     }
     for (int e = 0; e < layout.n_elements(); ++e)
         structure.elements.push_back({e * layout.degree, (e + 1) * layout.degree});
-    if (layout.are_momenta_unknown) structure.n_border = structure.n_closing = 2 * freedoms;
+    if (layout.are_momenta_unknown)
+        structure.n_border = structure.n_closing = 2 * freedoms + layout.n_numbers;
     return structure;
 }
 
@@ -53,7 +54,7 @@ public:
     void begin(const WindowLayout& layout, const Nodes& nodes) override
     {
         layout_ = &layout;
-        nodes_ = &nodes;
+        stand_at(tables_, nodes);
         for (int A = 0; A < layout.n_nodes(); ++A)
             if (layout.is_active(A) || layout.is_unknown(A))
                 nodes.basis(A).q.null_space(z_.data() + place(A));
@@ -70,7 +71,13 @@ public:
     void mass(int body, double factor, const double* H) override;
     void block(int body_i, int body_j, const double* values) override;
     void close() override;
-    void close_with(std::span<const double> closing) override;
+    void close_with(std::span<const double> closing, const DenseMatrix& by_numbers) override;
+    void stand_at(const ModelTables& tables, const Nodes& nodes) override
+    {
+        bodies_ = &tables.bodies;
+        nodes_ = &nodes;
+    }
+    void carry(double* rows) const override { to_factorised(rows); }
     bool factorise() override { return f_ == 0 || solver_->factorise(matrix_) == Outcome::regular; }
     void solve(std::span<const double> rows, const double* range, double* y) override;
     void describe(SolveReport& report) const override
@@ -105,7 +112,8 @@ private:
 
     const ModelTables& tables_;
     const WindowLayout* layout_ = nullptr;   // current
-    const Nodes* nodes_ = nullptr;
+    const Nodes* nodes_ = nullptr;           // rows and increments belong to them, and to these bodies
+    const BodyTables* bodies_ = nullptr;
     const lanes::BlockFunctions* functions_ = lanes::functions(4)->blocks;
     int f_;
     BlockStructure structure_;
@@ -162,17 +170,28 @@ void NullSpaces::close()
 }
 
 /// P(0) is added at the first node, P(T) taken off at the last.
-void NullSpaces::close_with(std::span<const double> closing)
+void NullSpaces::close_with(std::span<const double> closing, const DenseMatrix& by_numbers)
 {
     if (f_ == 0) return;
-    const int last = structure_.n_elements() - 1;
+    const int last = structure_.n_elements() - 1, m = structure_.n_border;
     for (int e = 0; e <= last; ++e) std::ranges::fill(matrix_.border_storage(e), 0.0);
     double *first_row = matrix_.border(0, 0), *last_row = matrix_.border(last, structure_.n_nodes() - 1);
     for (int i = 0; i < f_; ++i) {
-        first_row[i * 2 * f_ + i] = 1;
-        last_row[i * 2 * f_ + f_ + i] = -1;
+        first_row[i * m + i] = 1;
+        last_row[i * m + f_ + i] = -1;
     }
-    matrix_.closing().assign(closing.begin(), closing.end());
+    std::vector<double>& rows = matrix_.closing();
+    rows.assign(static_cast<std::size_t>(m * (2 * f_ + m)), 0.0);
+    for (int i = 0; i < m; ++i)
+        std::copy_n(closing.data() + 4 * f_ * i, 4 * f_, rows.data() + (2 * f_ + m) * i);
+    for (int j = 0; j < m - 2 * f_; ++j) {
+        const double* column = by_numbers.column(j).data();
+        for (int A = 0; A < structure_.n_nodes(); ++A) {
+            double* border = matrix_.border(layout_->first_element(A), A) + 2 * f_ + j;
+            for (int i = 0; i < f_; ++i) border[i * m] = *column++;
+        }
+        for (int i = 0; i < m; ++i) rows[(2 * f_ + m) * i + 4 * f_ + j] = *column++;
+    }
 }
 
 /// Reduced rows at the nodes as they stand now, to those that the factors belong to. Where a node has moved,
@@ -187,7 +206,7 @@ void NullSpaces::to_factorised(double* x) const
         std::fill_n(row.begin(), k, 0.0);
         std::copy_n(x, f_, row.begin() + k);
         nodes_->basis(A).q.apply(row.data());
-        carry_rows(tables_.bodies, nodes_->maps(A), maps_at(A), row.data());
+        carry_rows({*bodies_, nodes_->maps(A)}, {tables_.bodies, maps_at(A)}, row.data());
         std::fill_n(x, f_, 0.0);
         const double* z = z_.data() + place(A);
         for (int i = 0; i < n; ++i)
@@ -205,7 +224,7 @@ void NullSpaces::to_current(const double* x, int A, double* y) const
         y[i] = 0;
         for (int j = 0; j < f_; ++j) y[i] += z[i * f_ + j] * x[j];
     }
-    carry_twists(tables_.bodies, maps_at(A), nodes_->maps(A), y);
+    carry_twists({tables_.bodies, maps_at(A)}, {*bodies_, nodes_->maps(A)}, y);
 }
 
 void NullSpaces::solve(std::span<const double> rows, const double*, double* y)
@@ -266,6 +285,7 @@ double NullSpaces::least_resisted(std::span<const double> rows, std::vector<doub
         from += f_;
         to += tables_.n_twists;
     }
+    y.insert(y.end(), x.end() - layout_->n_numbers, x.end());
     return std::sqrt(square);
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "livens/solvers/dense_matrix.h"
 #include "livens/solvers/linear_solver.h"
 #include "livens/solvers/report.h"
 #include "livens/spacetime/nodal/tangent.h"
@@ -19,18 +20,25 @@ public:
     /// Takes the null spaces of all nodes, before a tangent is formed.
     virtual void begin(const WindowLayout& layout, const Nodes& nodes) = 0;
     /// Conditions by component, after a tangent was formed: their rows by the free motions at the first node,
-    /// at the last, and by momenta along these, which are in the balances there.
-    virtual void close_with(std::span<const double> /*closing*/) {}
+    /// at the last, and by momenta along these, which are in the balances there; and all rows (balances, then
+    /// conditions) by unknown numbers.
+    virtual void close_with(std::span<const double> /*closing*/, const DenseMatrix& /*by_numbers*/) {}
+    /// Rows and increments belong to these nodes, of a model with these tables, from now on: by default to
+    /// those of begin().
+    virtual void stand_at(const ModelTables&, const Nodes&) {}
+    /// Reduced rows where it stands, as those of the nodes of begin(): what is zero stays so.
+    virtual void carry(double* /*rows*/) const {}
     virtual bool factorise() = 0;
     /// y <- the scaled twists of unknown nodes, node after node, that the reduced rows of active nodes ask
-    /// for; with conditions by component their rows follow, and momenta along free motions in y.
+    /// for; with conditions by component their rows follow, and in y momenta along free motions, then
+    /// numbers.
     virtual void solve(std::span<const double> rows, const double* range, double* y) = 0;
     /// Whether solve() can take violations of the constraints in; else they are taken off before. `range`
     /// then holds the part of y across the null space at node 1 (in the basis), or null.
     virtual bool takes_constraints() const { return false; }
     /// Of the last factors: how far rows of these sizes (of all nodes, and of closing rows) may move the
     /// unknowns, by the sum of their squares, an estimate; and the scaled twists of unknown nodes that move
-    /// most. 0: they are not kept.
+    /// most, then unknown numbers. 0: they are not kept.
     virtual double least_resisted(std::span<const double> /*rows*/, std::vector<double>& /*y*/) { return 0; }
     virtual void describe(SolveReport& report) const = 0;
     /// Of the tangent that was formed; uses it up.

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "livens/spacetime/elements/window_layout.h"
@@ -12,6 +14,7 @@
 
 namespace livens::inline spacetime_internal {
 
+class Elimination;
 class Nodes;
 
 /// Border and closing rows of a window (docs/theory.md, "Conditions by component"). Unknowns are momenta
@@ -21,9 +24,9 @@ public:
     /// References must outlive it.
     EndConditions(const ModelTables& tables, const Ends& ends);
 
-    int n_border() const { return 2 * tables_.freedoms(); }
-    /// Of an increment as Newton's iteration sees it: momenta in world axes at both ends.
-    int n_numbers() const { return 2 * tables_.n_twists; }
+    int n_border() const { return 2 * tables_.freedoms() + ends_.n_numbers; }
+    /// Of an increment as Newton's iteration sees it: momenta in world axes at both ends, unknown numbers.
+    int n_numbers() const { return 2 * tables_.n_twists + ends_.n_numbers; }
     /// In world axes, about reference points; after evaluate() what joints allow.
     const std::vector<double>& momenta(bool last) const { return current_[last ? 1 : 0]; }
 
@@ -31,6 +34,8 @@ public:
     bool begin(bool last, const State& guess);
     void move(std::span<const double> dp, double damping);
     void keep() { kept_ = current_; }
+    /// What others have kept.
+    void adopt(const EndConditions& others) { current_ = kept_ = others.kept_; }
     /// States at both ends, and what conditions miss. False: something is not finite, or without a value.
     bool evaluate(const WindowLayout& layout, const Nodes& nodes);
     /// Rows of the balances with what the conditions miss behind them, both with the opposite sign.
@@ -44,10 +49,15 @@ public:
     /// Of the rows that rounding may make.
     std::vector<double> roundings() const;
 
+    /// Columns of unknown numbers, for a tangent that is formed in this sink: of balances, then conditions.
+    void border_with(std::function<DenseMatrix(Elimination&)> columns) { columns_ = std::move(columns); }
+    DenseMatrix columns(Elimination& formed) const { return columns_ ? columns_(formed) : DenseMatrix(); }
+
     /// Closing rows at the current point: unknowns of the first node, of the last, momenta.
     void differentiate(const WindowLayout& layout, const Nodes& nodes);
     std::span<const double> closing() const { return closing_; }
-    /// Increments of momenta from those along the free motions where closing rows were made.
+    /// Increments of momenta from those along the free motions where closing rows were made; numbers as they
+    /// are.
     void to_momenta(const double* along, double* dp) const;
     /// What moves by them in an element at the end, in lengths and radians.
     double size_of(std::span<const double> dp) const;
@@ -68,6 +78,7 @@ private:
     std::vector<double> missing_, closing_;
     std::array<DenseMatrix, 2> along_;   // momenta along free motions
     double largest_ = 0;
+    std::function<DenseMatrix(Elimination&)> columns_;   // or none
 };
 
 }   // namespace livens::inline spacetime_internal

@@ -94,11 +94,30 @@ void NodalSystem::form_all(Elimination& elimination)
     tangent_.form(layout_, nodes_, rows_, elimination);
     if (conditions_ == nullptr) return;
     conditions_->differentiate(layout_, nodes_);
-    elimination.close_with(conditions_->closing());
+    const DenseMatrix columns = conditions_->columns(elimination);
+    elimination.stand_at(tables_, nodes_);
+    elimination.close_with(conditions_->closing(), columns);
+}
+
+bool NodalSystem::adopt(const NodalSystem& other, bool is_pulled)
+{
+    in_use_ = pending_ = false;
+    nodes_.adopt(other.nodes_);
+    conditions_->adopt(*other.conditions_);
+    return !is_pulled || (nodes_.constrain(layout_, false) && pull(true));
+}
+
+std::vector<double> NodalSystem::rows_in(Elimination& formed) const
+{
+    formed.stand_at(tables_, nodes_);
+    std::vector<double> rows = conditions_->behind(rows_.reduced());
+    formed.carry(rows.data());
+    return rows;
 }
 
 bool NodalSystem::factorise()
 {
+    if (elimination_ == nullptr) choose_elimination();
     in_use_ = true;
     form_all(*elimination_);
     return elimination_->factorise();
@@ -110,21 +129,23 @@ void NodalSystem::keep()
     if (conditions_ != nullptr) conditions_->keep();
 }
 
-void NodalSystem::solve(std::span<double> dx)
+void NodalSystem::solve_for(const NodalSystem& other, std::span<double> dx)
 {
     if (pending_) {   // one node: its violations go into the linear system with the rows
         for (int c = 0; c < tables_.rank; ++c) range_[c] = -nodes_.violations(1)[c];
         nodes_.basis(1).q.solve_R_transposed(range_.data());
     }
     const double* range = pending_ ? range_.data() : nullptr;
+    const NodalRows& rows = other.rows_;
+    elimination_->stand_at(other.tables_, other.nodes_);
     if (conditions_ == nullptr)
-        elimination_->solve(rows_.reduced(), range, dx.data());
+        elimination_->solve(rows.reduced(), range, dx.data());
     else
-        elimination_->solve(conditions_->behind(rows_.reduced()), range, dx.data());
+        elimination_->solve(other.conditions_->behind(rows.reduced()), range, dx.data());
     double* twist = dx.data();
     for (int A = 0; A < layout_.n_nodes(); ++A) {
         if (!layout_.is_unknown(A)) continue;
-        tables_.bodies.to_twist(nodes_.maps(A), twist, twist);
+        other.tables_.bodies.to_twist(other.nodes_.maps(A), twist, twist);
         twist += tables_.n_twists;
     }
     if (conditions_ == nullptr) return;

@@ -27,6 +27,11 @@ public:
     void open(const WindowLayout& layout, const InstantState* first, const InstantState* last);
     /// Conditions by component, for layouts whose momenta at both ends are unknown; must outlive the system.
     void close_with(EndConditions& conditions) { conditions_ = &conditions; }
+    /// What a system of the same layout has kept, on another model. `is_pulled`: onto the joints of that. The
+    /// layout's states are not known. False: not finite, or too far away.
+    bool adopt(const NodalSystem& other, bool is_pulled);
+    /// Rows of balances and conditions with the opposite sign, in the null spaces of a sink that has begun.
+    std::vector<double> rows_in(Elimination& formed) const;
     /// Placed nodes may lie far from the constraints: pulls until the bases fit the nodes. False: not finite.
     bool settle();
 
@@ -41,6 +46,7 @@ public:
     /// Forms the tangent at the current point into another sink, for tests.
     void form_tangent(TangentSink& sink) { tangent_.form(layout_, nodes_, rows_, sink); }
     /// Of the conditions by component, or null.
+    EndConditions* conditions() { return conditions_; }
     const EndConditions* conditions() const { return conditions_; }
     /// The bases fit the nodes to rounding: nothing was pulled since they were made.
     bool bases_fit() const { return correction_ < 1e-15; }
@@ -54,7 +60,9 @@ public:
     /// Of the equations at a node, so far.
     long long evaluations() const { return evaluations_; }
     bool factorise() override;
-    void solve(std::span<double> dx) override;
+    void solve(std::span<double> dx) override { solve_for(*this, dx); }
+    /// Increments of another system of the same layout, on another model, by the factors of this one.
+    void solve_for(const NodalSystem& other, std::span<double> dx);
     bool move(std::span<const double> dx, double damping) override;
     void keep() override;
     double size_of(std::span<const double> dx) const override;

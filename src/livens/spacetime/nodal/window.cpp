@@ -54,6 +54,7 @@ bool NodalWindow::open(int first, int last, SolveReport& report)
         layout_.P_last = knows_momenta(ends_.at_end);
     }
     if (ends_.has_components()) layout_.P_first = layout_.P_last = layout_.are_momenta_unknown = true;
+    layout_.n_numbers = ends_.n_numbers;
     if (!is_ready_ && !begin_front(report)) return false;
     if (layout_.X_last && !set_state(far_, ends_.end, report)) return false;
     layout_.angles = layout_.X_first ? end_.here().angles : tables_.loads.turns.begin();
@@ -300,10 +301,13 @@ Uncertainty NodalWindow::uncertainty()
             }
         twist += tables_.n_twists;
     }
-    if (body < 0) return {};
+    std::vector<double> numbers;
+    for (int i = 0; i < layout_.n_numbers && !twists.empty(); ++i)
+        numbers.push_back(size * std::abs(twist[i]));
+    if (body < 0) return {0, "", 0, std::move(numbers)};
     return {size / system_.scale(),
             "body '" + tables_.model->body_name(body) + "' near t = " + to_text(time, 4) + " s",
-            size * largest};
+            size * largest, std::move(numbers)};
 }
 
 WorstResidual NodalWindow::worst() const

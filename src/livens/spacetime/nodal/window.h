@@ -27,7 +27,7 @@ public:
     /// motion. What was learnt of the last element stays.
     void restart();
     bool open(int first, int last, SolveReport& report) override;
-    NewtonProblem& equations() override { return system_; }
+    NodalSystem& equations() override { return system_; }
     bool start_from(const Guess& guess) override;
     State at(int element_end) const override;
     AcceptedElements close(const AcceptanceCriteria& criteria, SolveReport& report) override;

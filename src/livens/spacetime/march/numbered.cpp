@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// theory.md, "Unknown numbers".
+#include "livens/spacetime/march/numbered.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/base/text.h"
+
+namespace livens::inline spacetime_internal {
+
+namespace {
+
+constexpr double difference = 1e-4;   // of a number or its scale
+
+/// Both ends of time and the instants between them at which laws of loads jump or bend.
+std::vector<double> anchors_of(const Model& model, double start, double end)
+{
+    std::vector<double> all{start};
+    for (const double t : model.load_breaks())
+        if (t > start && t < end) all.push_back(t);
+    all.push_back(end);
+    return all;
+}
+
+/// t, which lies between two of these instants, as far between the same two of others.
+double moved_with(const std::vector<double>& from, double t, const std::vector<double>& to)
+{
+    std::size_t i = 1;
+    while (i + 1 < from.size() && t > from[i]) ++i;
+    if (t == from[i]) return to[i];
+    return to[i - 1] + (t - from[i - 1]) / (from[i] - from[i - 1]) * (to[i] - to[i - 1]);
+}
+
+}   // namespace
+
+NumberedProblem::NumberedProblem(const Model& model, const Ends& ends, const TimeMesh& mesh,
+                                 const UnknownNumbers& unknowns)
+    : model_(model), ends_(ends), mesh_(mesh), unknowns_(unknowns)
+{
+    if (size() > 0) anchors_ = anchors_of(model, mesh.start(), mesh.end());
+}
+
+std::vector<double> NumberedProblem::guesses() const
+{
+    std::vector<double> all;
+    for (const UnknownNumber& number : unknowns_.numbers) all.push_back(number.guess);
+    return all;
+}
+
+NumberedProblem::Instance NumberedProblem::at(std::span<const double> values) const
+{
+    Instance made{unknowns_.rebuild(values), ends_, mesh_};
+    const Rebuilt& rebuilt = made.rebuilt;
+    if (!(rebuilt.end > rebuilt.start))
+        throw InputError({"time-order", "time.end", "the end of time is not after its start",
+                          to_text(rebuilt.end, 6), "> " + to_text(rebuilt.start, 6), "", ""});
+    const std::vector<double> anchors = anchors_of(*rebuilt.model, rebuilt.start, rebuilt.end);
+    if (anchors.size() != anchors_.size())
+        throw InputError({"unknown-order", "time",
+                          "an instant at which a load switches leaves the time, or meets another", "", "",
+                          "elements end there, and their order does not change", ""});
+    for (auto* instants : {&made.mesh.ends, &made.mesh.required, &made.mesh.bends})
+        for (double& t : *instants) t = moved_with(anchors_, t, anchors);
+    made.ends.start.t = rebuilt.start;
+    made.ends.end.t = rebuilt.end;
+    made.ends.components = rebuilt.components;
+    return made;
+}
+
+double NumberedProblem::scale(int i) const
+{
+    const UnknownNumber& number = unknowns_.numbers[i];
+    if (number.guess != 0) return std::abs(number.guess);
+    const double width = number.high - number.low;
+    if (std::isfinite(width) && width > 0) return width;
+    return 1;
+}
+
+std::vector<NumberedProblem::Sample> NumberedProblem::samples(int i, double value) const
+{
+    // the derivative of the polynomial through these: between them, or at the first one
+    constexpr std::array<Sample, 4> inside{{{-2, 1.0 / 12}, {-1, -8.0 / 12}, {1, 8.0 / 12}, {2, -1.0 / 12}}};
+    constexpr std::array<Sample, 5> aside{{{0, -25.0 / 12}, {1, 4}, {2, -3}, {3, 4.0 / 3}, {4, -0.25}}};
+    const UnknownNumber& number = unknowns_.numbers[i];
+    const double size = scale(i), h = difference * std::max(std::abs(value), size);
+    const bool is_low = value - 2 * h<number.low, is_high = value + 2 * h> number.high;
+    std::vector<Sample> all;
+    if (!is_low && !is_high) all.assign(inside.begin(), inside.end());
+    if (is_low || is_high) all.assign(aside.begin(), aside.end());
+    const double step = is_low    ? std::min(h, (number.high - value) / 4)
+                        : is_high ? -std::min(h, (value - number.low) / 4)
+                                  : h;
+    for (Sample& one : all) one = {value + one.value * step, one.weight * size / step};
+    return all;
+}
+
+double carried_to(const TimeMesh& from, double t, const TimeMesh& to)
+{
+    if (t <= from.start()) return to.start() + (t - from.start());
+    if (t >= from.end()) return to.end() + (t - from.end());
+    const int e = from.element_at(t);
+    return to.ends[e] + (t - from.ends[e]) / from.length(e) * to.length(e);
+}
+
+}   // namespace livens::inline spacetime_internal

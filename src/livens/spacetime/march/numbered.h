@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Problems whose models have unknown numbers: what they are for any values of these.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "livens/spacetime/march/ends.h"
+
+namespace livens::inline spacetime_internal {
+
+/// A problem on a mesh with its unknown numbers, which may be none: models, conditions and element ends for
+/// any values of them. References must outlive it.
+class NumberedProblem {
+public:
+    NumberedProblem(const Model& model, const Ends& ends, const TimeMesh& mesh,
+                    const UnknownNumbers& unknowns);
+
+    /// A problem of its own, with what it is made of.
+    struct Instance {
+        Rebuilt rebuilt;
+        Ends ends;
+        TimeMesh mesh;
+    };
+    /// Throws InputError.
+    Instance at(std::span<const double> values) const;
+
+    int size() const { return static_cast<int>(unknowns_.numbers.size()); }
+    const UnknownNumber& operator[](int i) const { return unknowns_.numbers[i]; }
+    const Model& model() const { return model_; }
+    const Ends& ends() const { return ends_; }
+    const TimeMesh& mesh() const { return mesh_; }
+    const UnknownNumbers& unknowns() const { return unknowns_; }
+    std::vector<double> guesses() const;
+    /// What a number is compared with: its guess, or where that is zero its bounds, or one.
+    double scale(int i) const;
+    /// Values at which differences are taken, with their weights per scale: within the bounds.
+    struct Sample {
+        double value, weight;
+    };
+    std::vector<Sample> samples(int i, double value) const;
+
+private:
+    const Model& model_;
+    const Ends& ends_;
+    const TimeMesh& mesh_;
+    const UnknownNumbers& unknowns_;
+    std::vector<double> anchors_;   // instants that go with the numbers: both ends, and jumps of laws
+};
+
+/// The instant at which an element of one mesh is as far as an element of another at t.
+double carried_to(const TimeMesh& from, double t, const TimeMesh& to);
+
+}   // namespace livens::inline spacetime_internal

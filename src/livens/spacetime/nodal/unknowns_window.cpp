@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rows of one model are solved with columns that compare it with others: theory.md, "Unknown numbers".
+#include "livens/spacetime/nodal/unknowns_window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/base/text.h"
+#include "livens/solvers/patience.h"
+#include "livens/spacetime/nodal/elimination.h"
+
+namespace livens::inline spacetime_internal {
+
+UnknownsWindow::Instance::Instance(const NumberedProblem& problem, const std::vector<double>& of_numbers,
+                                   const ElementRule& rule, bool look_at_laws)
+    : values(of_numbers), of(problem.at(values)), tables(*of.rebuilt.model, of.ends.independent),
+      window(tables, of.mesh, of.ends, rule)
+{
+    if (!look_at_laws) window.ignore_laws();
+}
+
+UnknownsWindow::UnknownsWindow(const NumberedProblem& problem, const std::vector<double>& begin,
+                               const ElementRule& rule, bool look_at_laws, FoundNumbers& found)
+    : Window(static_cast<ElementMonitor&>(*this)), problem_(problem), begin_(begin), rule_(rule),
+      look_at_laws_(look_at_laws), found_(found)
+{}
+
+UnknownsWindow::Shared UnknownsWindow::make(const std::vector<double>& values)
+{
+    Patience::ask();
+    try {
+        auto made = std::make_shared<Instance>(problem_, values, rule_, look_at_laws_);
+        SolveReport report;
+        if (made->window.open(first_, last_, report)) return made;
+        why_ = report.message;
+    } catch (const InputError& error) {
+        why_ = error.complaint().message;
+    }
+    for (int i = 0; i < problem_.size(); ++i)
+        why_ += std::string(i == 0 ? " where '" : ", '") + problem_[i].name + "' is " + to_text(values[i], 6);
+    return nullptr;
+}
+
+bool UnknownsWindow::open(int first, int last, SolveReport& report)
+{
+    first_ = first;
+    last_ = last;
+    now_ = kept_ = make(begin_);
+    formed_ = nullptr;
+    if (now_ != nullptr) return true;
+    report.status = SolveStatus::singular;
+    report.message = why_;
+    return false;
+}
+
+bool UnknownsWindow::start_from(const Guess& guess)
+{
+    SolveReport report;
+    if (!guess || !open(first_, last_, report)) return false;
+    return now_->window.start_from(
+        [&](double t) { return guess(carried_to(now_->of.mesh, t, problem_.mesh())); });
+}
+
+bool UnknownsWindow::factorise()
+{
+    formed_ = now_;
+    NodalSystem& system = now_->window.equations();
+    system.conditions()->border_with([this](Elimination& formed) { return columns(formed); });
+    return system.factorise();
+}
+
+/// Rows with the opposite sign are what columns have on the other side.
+DenseMatrix UnknownsWindow::columns(Elimination& formed)
+{
+    const std::size_t n = now_->window.equations().rows_in(formed).size();
+    DenseMatrix all(static_cast<int>(n), problem_.size());
+    for (int i = 0; i < problem_.size(); ++i)
+        for (const NumberedProblem::Sample& sample : problem_.samples(i, now_->values[i]))
+            if (!add_sample(i, sample, formed, all.column(i))) std::ranges::fill(all.column(i), std::nan(""));
+    return all;
+}
+
+bool UnknownsWindow::add_sample(int i, const NumberedProblem::Sample& sample, Elimination& formed,
+                                std::span<double> column)
+{
+    std::vector<double> values = now_->values;
+    values[i] = sample.value;
+    const Shared other = make(values);
+    if (other == nullptr) return false;
+    NodalSystem& system = other->window.equations();
+    if (!system.adopt(now_->window.equations(), true) || !system.residual()) return false;
+    const std::vector<double> rows = system.rows_in(formed);
+    for (std::size_t k = 0; k < rows.size(); ++k) column[k] -= sample.weight * rows[k];
+    return true;
+}
+
+void UnknownsWindow::solve(std::span<double> dx)
+{
+    formed_->window.equations().solve_for(now_->window.equations(), dx);
+}
+
+bool UnknownsWindow::move(std::span<const double> dx, double damping)
+{
+    now_ = kept_;
+    if (damping == 0) return true;
+    std::vector<double> values = kept_->values;
+    const std::span<const double> numbers = numbers_in(dx);
+    for (int i = 0; i < problem_.size(); ++i)
+        values[i] = std::clamp(values[i] + damping * problem_.scale(i) * numbers[i], problem_[i].low,
+                               problem_[i].high);
+    const Shared other = make(values);
+    if (other == nullptr) return false;
+    NodalSystem& system = other->window.equations();
+    const bool is_placed = system.adopt(kept_->window.equations(), false) && system.move(dx, damping);
+    now_ = other;
+    return is_placed;
+}
+
+void UnknownsWindow::keep()
+{
+    now_->window.equations().keep();
+    kept_ = now_;
+}
+
+double UnknownsWindow::size_of(std::span<const double> dx) const
+{
+    double size = now_->window.equations().size_of(dx);
+    for (const double number : numbers_in(dx))
+        if (!(std::abs(number) <= size) && !std::isnan(size)) size = std::abs(number);
+    return size;
+}
+
+AcceptedElements UnknownsWindow::close(const AcceptanceCriteria& criteria, SolveReport& report)
+{
+    const AcceptedElements closed = now_->window.close(criteria, report);
+    found_ = {now_->values, now_->of.rebuilt};
+    return closed;
+}
+
+Uncertainty UnknownsWindow::uncertainty()
+{
+    if (!factorise()) return {1, "the motion with its unknown numbers", 1};
+    Uncertainty found = now_->window.uncertainty();
+    for (int i = 0; i < problem_.size(); ++i) {
+        const double moved = found.numbers.empty() ? 0 : found.numbers[i];
+        if (moved <= found.size) continue;
+        found.size = moved;
+        found.name = "the unknown '" + problem_[i].name + "'";
+    }
+    return found;
+}
+
+std::string UnknownsWindow::bounds_reached() const
+{
+    std::string all;
+    for (int i = 0; i < problem_.size(); ++i) {
+        const UnknownNumber& number = problem_[i];
+        const double value = kept_->values[i];
+        const bool is_low = value <= number.low, is_high = value >= number.high;
+        if (is_low || is_high)
+            all += "; the unknown '" + number.name + "' has come to its " + (is_low ? "lower" : "upper") +
+                   " bound " + to_text(value, 6);
+    }
+    return all;
+}
+
+void UnknownsWindow::describe(SolveReport& report) const
+{
+    if (now_ != nullptr) now_->window.describe(report);
+    if (kept_ == nullptr) return;
+    const std::string bounds = bounds_reached();
+    if (!report.converged()) {
+        report.message += bounds;
+        if (!why_.empty()) report.message += "; no model is made: " + why_;
+    } else if (!bounds.empty()) {
+        report.notes.push_back(bounds.substr(2));
+    }
+}
+
+}   // namespace livens::inline spacetime_internal
