@@ -5,8 +5,8 @@
 
 Each motion is marched first, from 0.5 s on. Then places (x) or momenta (p) at its two ends are all that is known, over 0.25 to
 4 s, beside rates times `--guess` at the start and none at the end: lobatto(8), 20 elements a second. A motion counts if the
-program gives it with exit 0, and a march from the start that it has arrives where it does: within 1e-9 lengths, or within what
-the march itself says of its error. Several motions may meet the same conditions. Counts without those that the program found
+program gives it with exit 0, and a march from the start that it has arrives where it does: within 1e-9 lengths and what both say
+of their errors, times what a small change of the start grows by. Several motions may meet the same conditions. Counts without those that the program found
 by ends that are led or by other rates stand beside: what plain guesses reach. Exit status 1 if fewer than --least count.
 """
 import argparse
@@ -115,6 +115,7 @@ def is_confirmed(runs, name, tree, run, summary):
     start, arrival = (runs.state(run, tree, t) for t in (0, end))
     march = {key: value for key, value in copy.deepcopy(tree).items() if key != "end"} | {"start": {"initial": "project"}}
     march["time"]["elements"] *= 2
+    march["method"]["growth"] = True
     for body in march["body"]:
         body.pop("end")
         body["start"] = placed(start[body["name"]], 1)
@@ -122,8 +123,8 @@ def is_confirmed(runs, name, tree, run, summary):
     if status not in (0, 7):
         return False
     off = max(abs(a - b) for body, state in runs.state(other, march, end).items() for a, b in zip(state["position"], arrival[body]["position"]))
-    length, growth = summary["model_length"], of_march.get("growth") or 1
-    return off / length <= EXACT * max(1, growth) + 10 * (of_march.get("estimated_error") or 0)
+    length, growth = summary["model_length"], max(1, of_march.get("growth") or 1)
+    return off / length <= growth * (EXACT + 10 * (summary.get("estimated_error") or 0)) + 10 * (of_march.get("estimated_error") or 0)
 
 
 def case(runs, name, tree, forward, ends, duration, guess):
@@ -131,7 +132,7 @@ def case(runs, name, tree, forward, ends, duration, guess):
     asked = between(tree, runs.state(forward, tree, BEGIN), runs.state(forward, tree, BEGIN + duration), duration, ends, guess)
     label = f"{name}_{ends}_{guess}_{duration}"
     status, summary, run = runs.solve(label, asked)
-    led = next((note for note in summary.get("notes", []) if "led" in note), "")
+    led = next((note for note in summary.get("notes", []) if note.startswith("found ")), "")
     return label, status, status == 0 and is_confirmed(runs, label, asked, run, summary), led
 
 

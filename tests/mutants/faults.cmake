@@ -1578,3 +1578,19 @@ livens_mutant(NAME rounding_forgets_a_factor
               NEW [[progress.contraction]]
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.AFactorServesElementsOfTheSameLength)
+
+# Of many marches the first is taken for the nearest.
+livens_mutant(NAME any_march_is_the_nearest
+              FILE spacetime/guess.cpp
+              OLD [[std::ranges::stable_sort(nearest, {}, &Arrival::off);]]
+              NEW [[;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Guess.FromManySizesOfRatesArrivesNearest)
+
+# A curve goes back where its way does.
+livens_mutant(NAME curves_end_at_folds
+              FILE spacetime/curve.cpp
+              OLD [[with_last < 0 ? -norm : norm]]
+              NEW [[norm]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Curve.PassesFoldsWhereTheWayTurnsBack)

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "livens/base/error.h"
+#include "livens/base/text.h"
 #include "livens/diagnostics/acceptance.h"
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
@@ -149,11 +150,11 @@ Guess guess_between(const State& first, const State& last)
 namespace {
 
 /// The march from a state that is complete, stated or guessed, at the near end.
-Guess march_from(const Model& model, const State& near, std::span<const double> times, bool from_start)
+Guess march_from(const Model& model, const State& near, const GuessMesh& mesh, bool from_start)
 {
-    std::vector<double> march(times.begin(), times.end());
+    std::vector<double> march(mesh.times.begin(), mesh.times.end());
     if (!from_start) std::reverse(march.begin(), march.end());
-    return guess_from_state(model, near, march).motion;
+    return guess_from_state(model, near, march, mesh.degree).motion;
 }
 
 /// How far a motion misses what is known at an end, in lengths, radians, or momenta of some speed.
@@ -166,8 +167,7 @@ double missing(const Model& model, const Guess& motion, const State& known, Know
 
 }   // namespace
 
-std::vector<GuessFromEnds> guesses_from_ends(const Model& model, const Ends& ends,
-                                             std::span<const double> times)
+std::vector<GuessFromEnds> guesses_from_ends(const Model& model, const Ends& ends, const GuessMesh& mesh)
 {
     struct Candidate {
         GuessFromEnds guess;
@@ -187,7 +187,7 @@ std::vector<GuessFromEnds> guesses_from_ends(const Model& model, const Ends& end
         if (!is_moving(near) && is_moving(far)) begins.push_back(with_rates(near, far));
         const auto first = static_cast<std::ptrdiff_t>(found.size());
         for (const State& begin : begins) {
-            const Guess march = march_from(model, begin, times, from_start);
+            const Guess march = march_from(model, begin, mesh, from_start);
             const bool is_bent = knows_positions(given);
             found.push_back({{is_bent ? bent(march, near.t, far) : march, from_start},
                              !is_moving(near),
@@ -203,7 +203,45 @@ std::vector<GuessFromEnds> guesses_from_ends(const Model& model, const Ends& end
     return guesses;
 }
 
-GuessFromEnds march_to_lead(const Model& model, const Ends& ends, std::span<const double> times, int attempt)
+std::vector<GuessFromEnds> nearest_marches(const Model& model, const Ends& ends, const GuessMesh& mesh)
+{
+    constexpr int n = 40, most = 4;   // of marches, and of those that are tried
+    constexpr double smallest = 0.5, largest = 2;
+    const bool from_start = knows_positions(ends.at_start) || !knows_positions(ends.at_end);
+    State near = from_start ? ends.start : ends.end;
+    const State& far = from_start ? ends.end : ends.start;
+    const Known given = from_start ? ends.at_end : ends.at_start;
+    if (!is_moving(near))
+        near = with_rates(near, is_moving(far) ? far : guess_between(ends.start, ends.end)(near.t));
+    if (!is_moving(near)) return {};
+    struct Arrival {
+        Guess march;
+        double factor = 1, off = 0;
+    };
+    std::vector<Arrival> all;
+    for (int i = 0; i <= n; ++i) {
+        const double factor = smallest * std::pow(largest / smallest, static_cast<double>(i) / n);
+        State begin = near;
+        for (Matrix34& V : begin.V) V = factor * V;
+        const Guess march = march_from(model, begin, mesh, from_start);
+        all.push_back({march, factor, missing(model, march, far, given)});
+    }
+    std::vector<Arrival> nearest;   // nearer than those beside them
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const bool is_least =
+            (i == 0 || all[i].off <= all[i - 1].off) && (i + 1 == all.size() || all[i].off < all[i + 1].off);
+        if (is_least) nearest.push_back(all[i]);
+    }
+    std::ranges::stable_sort(nearest, {}, &Arrival::off);
+    std::vector<GuessFromEnds> guesses;
+    for (const Arrival& one : nearest)
+        if (std::ssize(guesses) < most)
+            guesses.push_back({knows_positions(given) ? bent(one.march, near.t, far) : one.march, from_start,
+                               to_text(one.factor, 3)});
+    return guesses;
+}
+
+GuessFromEnds march_to_lead(const Model& model, const Ends& ends, const GuessMesh& mesh, int attempt)
 {
     struct Way {
         double factor;   // of stated rates; 0: those of steady motions
@@ -226,7 +264,7 @@ GuessFromEnds march_to_lead(const Model& model, const Ends& ends, std::span<cons
         if (way.factor == 0) near = with_rates(near, guess_between(ends.start, ends.end)(near.t));
         for (Matrix34& V : near.V)
             if (way.factor > 0) V = way.factor * V;
-        return {march_from(model, near, times, from_start), from_start, way.words, attempt + 1};
+        return {march_from(model, near, mesh, from_start), from_start, way.words, attempt + 1};
     }
     return {};
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "livens/dynamics/rows/tables.h"
@@ -27,21 +28,32 @@ Guess guess_steady(const State& state);
 /// Points on straight lines and directors turning steadily from the places of one state to those of another.
 Guess guess_between(const State& first, const State& last);
 
+/// Element ends and the degree of marches that conditions at both ends are looked for from: where small
+/// changes grow, one of a low degree arrives elsewhere.
+struct GuessMesh {
+    std::span<const double> times;
+    int degree = 2;
+};
+
 /// For conditions at both ends; made from one of them on.
 struct GuessFromEnds {
     Guess motion;
     bool from_start = true;
-    const char* rates = "";   ///< in words, of marches to lead from
-    int next = 0;             ///< attempt after that
+    std::string rates{};   ///< in words, of marches to lead from; or how many times the stated ones
+    int next = 0;          ///< attempt after that
 };
 /// From what is known, with what is stated beside it as a guess: a march from each end where that is enough,
 /// bent steadily onto positions that are known at the other end; momenta are met as a march has them. From
 /// ends that move first, those that miss least before others; between places without rates, steady motions.
-std::vector<GuessFromEnds> guesses_from_ends(const Model& model, const Ends& ends,
-                                             std::span<const double> times);
+std::vector<GuessFromEnds> guesses_from_ends(const Model& model, const Ends& ends, const GuessMesh& mesh);
 
 /// Marches that conditions at the other end may be led from: with the rates that are stated, with those of
 /// steady motions between the ends, and with others. Null behind the last one.
-GuessFromEnds march_to_lead(const Model& model, const Ends& ends, std::span<const double> times, int attempt);
+GuessFromEnds march_to_lead(const Model& model, const Ends& ends, const GuessMesh& mesh, int attempt);
+
+/// Marches with many sizes of the stated rates, of which those that arrive nearest to what is known at the
+/// other end are bent to it, nearest first. Where none are stated: of those of the other end, or of steady
+/// motions.
+std::vector<GuessFromEnds> nearest_marches(const Model& model, const Ends& ends, const GuessMesh& mesh);
 
 }   // namespace livens::inline spacetime_internal

@@ -11,6 +11,7 @@
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
 #include "livens/solvers/patience.h"
+#include "livens/spacetime/curve.h"
 #include "livens/spacetime/march/components.h"
 #include "livens/spacetime/march/windows.h"
 
@@ -77,7 +78,10 @@ public:
             previous = std::exchange(led.share, share);
             step *= 2;
         }
-        if (led.share == 1) led.motion = last;
+        if (led.share == 1)
+            led.motion = last;
+        else if (problem_.size() == 0)
+            follow({last, led.share}, led);
         return led;
     }
 
@@ -93,13 +97,30 @@ private:
         return all;
     }
 
+    /// The way turns back somewhere: along the curve of motions, which does not.
+    void follow(const OnCurve& from, Leading& led)
+    {
+        const Followed followed =
+            follow_curve(model_, mesh_, rule_.degree, from, [this](double share) { return ends_at(share); });
+        led.steps += followed.steps;
+        led.turns = followed.turns;
+        if (followed.motion) led.motion = solved(1, followed.motion);
+    }
+
     Guess solved(double share, const Guess& guess)
+    {
+        const std::optional<Ends> ends = ends_at(share);
+        return ends ? solved_between(*ends, guess) : Guess{};
+    }
+
+    /// Where joints close.
+    std::optional<Ends> ends_at(double share) const
     {
         if (ends_.has_components()) {
             Ends ends = ends_;
             ends.led_values = arrived_;
             ends.led_share = share;
-            return solved_between(ends, guess);
+            return ends;
         }
         Problem problem{{ends_.start, ends_.at_start, ends_.end, ends_.at_end}};
         State& far = from_start_ ? problem.conditions.end : problem.conditions.start;
@@ -109,10 +130,9 @@ private:
             far.X[b] = on_the_way(arrival_.X[b], arrival_.X[b], stated.X[b], share);
         TriedEnds tried = try_close_ends(model_, problem, mesh_.start(), mesh_.end(), StartPolicy::project);
         if (!tried.ends) return {};
-        Ends& ends = *tried.ends;
-        ends.led_from = arrival_;
-        ends.led_share = is_place ? 1 : share;
-        return solved_between(ends, guess);
+        tried.ends->led_from = arrival_;
+        tried.ends->led_share = is_place ? 1 : share;
+        return tried.ends;
     }
 
     Guess solved_between(const Ends& ends, const Guess& guess)

@@ -13,6 +13,7 @@ struct Leading {
     Guess motion{};     ///< that meets both ends; empty: it was not found
     double share = 0;   ///< of the way that was gone
     int steps = 0;      ///< solutions, with those that failed
+    int turns = 0;      ///< of a way that turned back
 };
 
 /// A motion of lobatto(degree) that meets what is known at both ends, from one that meets what is known at

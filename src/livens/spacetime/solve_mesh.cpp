@@ -57,6 +57,12 @@ std::vector<double> instants(const TimeMesh& mesh, const Ends& ends, int first, 
     return times;
 }
 
+std::string past_turns(int turns)
+{
+    if (turns == 0) return "";
+    return turns == 1 ? ", past a fold" : ", past " + std::to_string(turns) + " folds";
+}
+
 /// Where windows start from, one attempt after the other. From a state: a march of lobatto over the
 /// elements, or more and more pieces of them. Single elements of lobatto and radau have their own guess;
 /// where that leads nowhere they are too long, and are divided.
@@ -94,25 +100,37 @@ private:
         if (attempt == 0 && problem_.guess) return problem_.guess;
         if (problem_.is_only_guess) return {};
         if (plain_.empty()) {
-            plain_ = guesses_from_ends(model_, guessed_ends(), mesh_.ends);
+            plain_ = guesses_from_ends(model_, guessed_ends(), guess_mesh());
             if (problem_.guess) plain_.insert(plain_.begin(), GuessFromEnds{});   // tried before
         }
-        if (attempt < static_cast<int>(plain_.size())) return plain_[attempt].motion;
-        const auto* mixed = std::get_if<Mixed>(&method_);
-        const int degree = mixed != nullptr ? mixed->witness().degree : rule_of(method_).degree;
+        const int n_plain = static_cast<int>(plain_.size());
+        if (attempt < n_plain) return plain_[attempt].motion;
+        if (!nearest_) nearest_ = nearest_marches(model_, guessed_ends(), guess_mesh());
+        if (attempt < n_plain + static_cast<int>(nearest_->size())) {
+            told_ = "found from the stated or steady rates times " + (*nearest_)[attempt - n_plain].rates +
+                    ", with which a march arrives nearest";
+            return (*nearest_)[attempt - n_plain].motion;
+        }
         while (true) {
-            const GuessFromEnds march = march_to_lead(model_, guessed_ends(), mesh_.ends, lead_);
+            const GuessFromEnds march = march_to_lead(model_, guessed_ends(), guess_mesh(), lead_);
             if (!march.motion) break;
             lead_ = march.next;
-            const Leading led = lead(numbered_, degree, march.motion, march.from_start);
+            const Leading led = lead(numbered_, degree(), march.motion, march.from_start);
             if (!led.motion) continue;
             told_ = "found by an end that was led, in " + std::to_string(led.steps) +
                     " steps, from where a march from the " + (march.from_start ? "start " : "end ") +
-                    march.rates + " arrives";
+                    march.rates + " arrives" + past_turns(led.turns);
             return led.motion;
         }
         return {};
     }
+
+    int degree() const
+    {
+        const auto* mixed = std::get_if<Mixed>(&method_);
+        return mixed != nullptr ? mixed->witness().degree : rule_of(method_).degree;
+    }
+    GuessMesh guess_mesh() const { return {mesh_.ends, degree()}; }
 
     const Ends& guessed_ends()
     {
@@ -130,7 +148,8 @@ private:
     const Window& window_;
     std::optional<Ends> guessed_;   // of conditions by component
     std::vector<GuessFromEnds> plain_;
-    int n_plain_ = 0, lead_ = 0;   // guesses, and marches that were led, so far
+    std::optional<std::vector<GuessFromEnds>> nearest_;   // made where plain ones fail
+    int n_plain_ = 0, lead_ = 0;                          // guesses, and marches that were led, so far
     std::string told_;
 };
 

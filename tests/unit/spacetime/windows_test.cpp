@@ -400,12 +400,36 @@ TEST(Guess, FromBothEndsMeetsWhatIsKnown)
     ends.end = march(0.3);
     ends.end.t = 0.3;
     for (Matrix34& V : ends.end.V) V = {};
-    const Guess still = guesses_from_ends(model, ends, times)[0].motion;
+    const Guess still = guesses_from_ends(model, ends, {times})[0].motion;
     ends.start.V[1] = rate(ends.start.X[1], {0, 0, 0}, {0.1, 0, 0});
-    const Guess moving = guesses_from_ends(model, ends, times)[0].motion;
+    const Guess moving = guesses_from_ends(model, ends, {times})[0].motion;
     for (const Guess& guess : {still, moving})
         for (int b = 0; b < model.n_bodies(); ++b) EXPECT_LT(norm(guess(0.3).X[b] - ends.end.X[b]), 1e-12);
     EXPECT_LT(norm(moving(0.15).X[0] - march(0.15).X[0]), norm(still(0.15).X[0] - march(0.15).X[0]));
+}
+
+/// Of rates that are stated much too small.
+TEST(Guess, FromManySizesOfRatesArrivesNearest)
+{
+    const Model model = testing_models::two_bricks();
+    const std::vector<double> times{0, 0.1, 0.2, 0.3, 0.4, 0.5};
+    State start = model.start();
+    start.V[0] = rate(start.X[0], {}, {0.5, -2, 1});
+    start.V[1] = rate(start.X[1], start.V[0] * point({1, 0, 0}), {-1, 1, 2});
+    Ends ends;
+    ends.at_start = ends.at_end = Known::positions;
+    ends.end = guess_from_state(model, start, times, 6).motion(0.5);
+    ends.end.t = 0.5;
+    for (Matrix34& V : ends.end.V) V = {};
+    ends.start = start;
+    for (Matrix34& V : ends.start.V) V = 0.6 * V;
+    const std::vector<GuessFromEnds> all = nearest_marches(model, ends, {times, 6});
+    ASSERT_FALSE(all.empty());
+    EXPECT_LE(all.size(), 4u);
+    EXPECT_NEAR(std::stod(all[0].rates), 1 / 0.6, 0.04);
+    for (const GuessFromEnds& one : all)
+        for (int b = 0; b < model.n_bodies(); ++b)
+            EXPECT_LT(norm(one.motion(0.5).X[b] - ends.end.X[b]), 1e-12);
 }
 
 }   // namespace

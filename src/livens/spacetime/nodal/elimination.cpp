@@ -114,7 +114,6 @@ private:
     const WindowLayout* layout_ = nullptr;   // current
     const Nodes* nodes_ = nullptr;           // rows and increments belong to them, and to these bodies
     const BodyTables* bodies_ = nullptr;
-    const lanes::BlockFunctions* functions_ = lanes::functions(4)->blocks;
     int f_;
     BlockStructure structure_;
     std::unique_ptr<LinearSolver> solver_;
@@ -165,7 +164,7 @@ void NullSpaces::close()
     const int stride = matrix_.stride(e_);
     double* const block = matrix_.block(e_, place_of_row(*layout_, A_), B_);
     for (int r = 0; r < f_; ++r) std::fill_n(block + r * stride, f_, 0.0);
-    functions_->add_from_left(z_.data() + place(A_), {tables_.n_twists, f_, 1}, product_.data(), f_, block,
+    lanes::functions(4)->blocks->add_from_left(z_.data() + place(A_), {tables_.n_twists, f_, 1}, product_.data(), f_, block,
                               stride);
 }
 

@@ -109,6 +109,19 @@ void NodePositions::place_solved(const double* increments, int width)
 }
 
 /// Node A of `to` <- node A_from of `from`, both parts, + the displacement at hand.
+void NodePositions::adopt(const NodePositions& others, const WindowLayout& layout)
+{
+    const Set& kept = others.sets_[others.kept_];
+    for (int A = 0; A < layout.n_nodes(); ++A)
+        for (Set& set : sets_) {
+            if (!layout.is_unknown(A)) continue;
+            std::copy_n(kept.X.begin() + static_cast<std::ptrdiff_t>(place(A)), size_,
+                        set.X.begin() + static_cast<std::ptrdiff_t>(place(A)));
+            std::copy_n(kept.low.begin() + static_cast<std::ptrdiff_t>(place(A)), size_,
+                        set.low.begin() + static_cast<std::ptrdiff_t>(place(A)));
+        }
+}
+
 void NodePositions::add(const Set& from, int A_from, Set& to, int A)
 {
     add_two_sums(from.X.data() + place(A_from), from.low.data() + place(A_from), displacement_.data(),
@@ -239,7 +252,7 @@ void Nodes::constrain_node(int e, int B, bool same_choices, double& sum)
         // from the element's first node, which keeps the digits of a small increment
         double phi = B == 0               ? tables_.rows.value(own.rows[c], at(A), X(A), own.gradient(c))
                      : table.is_quadratic ? reference[c] + tables_.rows.change(own.rows[c], first.gradient(c),
-                                                                          own.gradient(c), step)
+                                                                               own.gradient(c), step)
                                           : followed(e, B, c);
         if (std::abs(phi) < rounding * table.row->scale) phi = 0;
         if (!(std::abs(phi) <= close * table.row->scale)) near_ = false;

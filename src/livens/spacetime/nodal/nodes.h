@@ -46,8 +46,8 @@ public:
     void move(int A, const double* twist, double factor);
     void begin_move() { current_ = 1 - kept_; }
     void keep() { kept_ = current_; }
-    /// Both sets become what others, as many nodes and bodies, have kept.
-    void adopt(const NodePositions& others) { sets_[0] = sets_[1] = others.sets_[others.kept_]; }
+    /// Unknown nodes of both sets become what others, as many nodes and bodies, have kept.
+    void adopt(const NodePositions& others, const WindowLayout& layout);
     /// dX of all nodes of an element, from both parts of X.
     void take_differences(int e);
 

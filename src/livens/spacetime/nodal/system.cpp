@@ -102,8 +102,8 @@ void NodalSystem::form_all(Elimination& elimination)
 bool NodalSystem::adopt(const NodalSystem& other, bool is_pulled)
 {
     in_use_ = pending_ = false;
-    nodes_.adopt(other.nodes_);
-    conditions_->adopt(*other.conditions_);
+    nodes_.adopt(other.nodes_, layout_);
+    if (conditions_ != nullptr) conditions_->adopt(*other.conditions_);
     return !is_pulled || (nodes_.constrain(layout_, false) && pull(true));
 }
 

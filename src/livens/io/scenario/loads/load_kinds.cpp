@@ -260,6 +260,18 @@ std::vector<Key> keys_of_attraction()
 
 }   // namespace
 
+namespace {
+
+LoadKind torque_kind()
+{
+    return {{"torque", "acts on a body, or as a couple between two",
+             keys_on_body("torque", "N m", {reaction_key()})},
+            make_torque,
+            check_value};
+}
+
+}   // namespace
+
 const std::vector<LoadKind>& load_kinds()
 {
     const Key point{"point", types::point, "Point of application, in body coordinates.", "m", "[0, 0, 0]"};
@@ -267,9 +279,7 @@ const std::vector<LoadKind>& load_kinds()
         {{"force", "acts at a point of a body", keys_on_body("force", "N", {point})},
          make_force,
          check_value},
-        {{"torque", "acts on a body", keys_on_body("torque", "N m", {reaction_key()})},
-         make_torque,
-         check_value},
+        torque_kind(),
         {{"spring",
           "acts along the line between two points, along a rope over several points, or along a joint "
           "coordinate, "
