@@ -67,17 +67,6 @@ Places places(const Scenario& scenario, const SolveArguments& arguments)
     return p;
 }
 
-void check_several(const SolveArguments& arguments)
-{
-    if (!arguments.csv.empty())
-        throw failure(exit_usage,
-                      "'--csv' takes the samples of one scenario; 'livens export' makes them of any result");
-    std::error_code unknown;   // what cannot be looked at is no folder to write to
-    if (!arguments.output.empty() && !fs::is_directory(arguments.output, unknown))
-        throw failure(exit_usage, "'--output' has to be a folder where several scenarios are solved; '" +
-                                      plain(arguments.output) + "' is none");
-}
-
 /// Memory that checks and writing will want, asked for before solving and given back behind it: a motion that
 /// was solved must not be lost for want of it. Nothing of it is touched: it costs address space alone.
 class Reserve {
@@ -263,13 +252,6 @@ std::string summary_of(const Solved& solved, const Places& p, bool verbose)
     return summary.text();
 }
 
-/// What a guess is wrong in is told before anything is solved; a run that fails must not replace it.
-void check_guess(const Scenario& scenario, const Run& guess, const Places& p, const SolveArguments& arguments)
-{
-    check_differs(p.output, arguments.guess, "it is the guess of the motion");
-    guess_of(scenario, guess);   // throws
-}
-
 /// All of them are read, and all places looked at, before the first is solved.
 std::vector<Job> read_jobs(const SolveArguments& arguments, const Common& common)
 {
@@ -282,7 +264,10 @@ std::vector<Job> read_jobs(const SolveArguments& arguments, const Common& common
         std::vector<Diagnostic> warnings;
         Scenario scenario = load_scenario(file, common, &warnings);
         Places p = places(scenario, arguments);
-        if (guess) check_guess(scenario, *guess, p, arguments);
+        if (guess) {   // what is wrong with it is told before anything is solved
+            check_differs(p.output, arguments.guess, "it is the guess of the motion");
+            guess_of(scenario, *guess);
+        }
         say_detail(fmt::format("read and checked the scenario in {:.3g} s", seconds_since(begin)));
         for (const Job& job : jobs) {
             check_inputs(p.output, job.scenario);
@@ -299,12 +284,24 @@ std::vector<Job> read_jobs(const SolveArguments& arguments, const Common& common
     return jobs;
 }
 
+/// A search between both ends that finds no motion leaves an older run that has one where it is.
+Places places_of(const Solved& solved, Job& job)
+{
+    Places p = job.places;
+    const bool is_march =
+        job.scenario.conditions.at_start == Known::state || job.scenario.conditions.at_end == Known::state;
+    if (is_march || solved.run.report.reached_end() || job.force || !is_converged_run(p.output)) return p;
+    job.complaints.push_back("the older run in '" + p.output.string() + "' has a motion and is kept");
+    p.record = record_of(p.output.replace_extension(".failed.nc"));
+    return p;
+}
+
 /// Solves, writes, and keeps what there is to say, which is found before: where memory ends over it, an older
 /// result stays.
 void do_job(Job& job, const Common& common, double share, ProgressLine& line)
 {
     const Solved solved = solve_job(job, share, line);
-    const Places& p = job.places;
+    const Places p = places_of(solved, job);
     job.exit_code = exit_code_of(solved);
     const SolveReport& report = solved.run.report;
     if (job.exit_code != exit_ok)

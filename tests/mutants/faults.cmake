@@ -1570,3 +1570,11 @@ livens_mutant(NAME components_unmet
               NEW [[if (std::abs(values[i] - one.value) <= 1e30 * scale) continue;]]
               TESTS_OF convergence
               MUST_FAIL Components.ThatAreNotMetAreSuspect)
+
+# What an iteration that failed came to is thrown away, so that nothing can be looked at.
+livens_mutant(NAME iterates_are_thrown_away
+              FILE spacetime/solve_mesh.cpp
+              OLD [[w.keeps_iterate = is_nodal(method);]]
+              NEW [[w.keeps_iterate = false;]]
+              TESTS_OF convergence
+              MUST_FAIL LobattoEnds.ThatAreNotFoundLeaveTheLastIterate)

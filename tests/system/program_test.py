@@ -269,6 +269,44 @@ class Solve(ProgramTest):
         self.assertEqual((self.folder / "first.nc").read_bytes(), before)
         self.assertFalse((self.folder / "third.nc").exists())
 
+    def test_a_search_that_fails_keeps_its_iterate_and_an_older_motion(self):
+        """One step does not find how to throw a bob to the other side of its hook; from there it is near."""
+        text = """format = 1
+gravity = [0, 0, -9.81]
+[[body]]
+name = "bob"
+shape = { point = true }
+mass = 0.2
+position = [0.8, 0, -0.6]
+end = { position = [0, 0.6, -0.8] }
+[[joint]]
+name = "string"
+type = "rod"
+between = ["world", "bob"]
+points = [[0, 0, 0], [0, 0, 0]]
+[time]
+end = 1
+elements = 20
+[method]
+max_iterations = STEPS
+[start]
+given = "positions"
+[end]
+given = "positions"
+"""
+        self.write("bob.toml", text.replace("STEPS", "30"))
+        self.write("short.toml", text.replace("STEPS", "1"))
+        self.expect(0, "solve", "bob.toml", "-o", "bob.nc", "-q")
+        good = (self.folder / "bob.nc").read_bytes()
+        done = self.expect(4, "solve", "short.toml", "-o", "bob.nc")
+        self.assertIn("the last iterate is kept", done.out)
+        self.assertIn("is kept", done.err)
+        self.assertEqual((self.folder / "bob.nc").read_bytes(), good)
+        self.assertIn("the last iterate is kept", self.expect(0, "info", "bob.failed.nc").out)
+        self.expect(0, "solve", "bob.toml", "--guess", "bob.failed.nc", "-o", "again.nc", "-q")
+        self.expect(4, "solve", "short.toml", "-o", "bob.nc", "--force", "-q")   # as is asked for
+        self.assertNotEqual((self.folder / "bob.nc").read_bytes(), good)
+
     def test_instructions_are_pinned_and_named(self):
         self.write("small.toml", SMALL)
         def bytes_of(*arguments, **variables):

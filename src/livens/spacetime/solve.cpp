@@ -144,6 +144,10 @@ Solution solve(const Model& model, const Problem& stated, const Time& time, cons
     }
     // A start that does not close is an error of the input; inside of searches it is a result among others.
     if (solution.cannot_begin) throw InputError(std::move(*solution.cannot_begin));
+    const bool is_iterate = solution.report.n_elements == 0 && solution.motion.n_elements() > 0;
+    if (is_iterate && !solution.report.converged())
+        solution.report.message +=
+            "; the last iterate is kept, which does not meet the equations but may serve as a guess";
     if (!options.judge || solution.motion.mesh.ends.empty()) return solution;
     // The estimate comes first: whether rounding spoils the accuracy, and what is suspect, follow from it.
     estimate(model, problem, method, options, solution);
