@@ -125,6 +125,11 @@ void check_several(const SolveArguments& arguments)
                                       plain(arguments.output) + "' is none");
 }
 
+fs::path root_place(fs::path output, std::size_t i)
+{
+    return output.replace_extension("." + std::to_string(i + 2) + ".nc");
+}
+
 bool is_converged_run(const fs::path& file)
 {
     std::error_code unknown;

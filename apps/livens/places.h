@@ -38,6 +38,8 @@ void check_inputs(const std::filesystem::path& file, const Scenario& scenario);
 void check_differs(const std::filesystem::path& file, const std::filesystem::path& other, const char* why);
 /// What the arguments say of one scenario alone, or of a folder.
 void check_several(const SolveArguments& arguments);
+/// NAME.2.nc and so on, beside NAME.nc.
+std::filesystem::path root_place(std::filesystem::path output, std::size_t i);
 /// Whether a run stands there that came to its end.
 bool is_converged_run(const std::filesystem::path& file);
 

@@ -41,6 +41,9 @@ struct Solution {
     double estimate_seconds = 0;   ///< that the second solution and the neighbouring motion took
     /// Why the motion has no beginning, where that is a matter of the motion before it; solve() throws it.
     std::optional<Complaint> cannot_begin{};
+    /// Where several motions were asked for: the others that were found, by their effort.
+    std::vector<Solution> roots{};
+    double effort = 0;   ///< J s: the kinetic energy over all of time, by which several motions are ordered
     /// Of a model with inertias along coordinates the same with their points, see WithRotors: what estimate()
     /// goes on from. Null: it has none.
     std::shared_ptr<Solution> with_rotors{};

@@ -37,8 +37,11 @@ std::optional<Complaint> close_end(const Model& model, State& state, Known known
 
 /// Guesses at both ends, of which that at the start says which rows are independent; a guess at the end that
 /// no place near closes, or that nobody gave, is the one at the start.
-std::optional<Complaint> close_guesses(const Model& model, Ends& ends)
+std::optional<Complaint> close_guesses(const Model& model, Ends& ends, StartPolicy policy, bool is_periodic)
 {
+    std::optional<Complaint> given = close_end(model, ends.end, ends.at_end, policy, nullptr, ends);
+    if (!given) given = close_end(model, ends.start, ends.at_start, policy, nullptr, ends);
+    if (given) return given;
     TriedStart start = try_consistent_start(model, ends.start, StartPolicy::project);
     if (!start.closed) return std::move(start.why);
     ends.start = std::move(start.closed->start);
@@ -51,6 +54,9 @@ std::optional<Complaint> close_guesses(const Model& model, Ends& ends)
     TriedStart end = try_consistent_start(model, ends.end, StartPolicy::project);
     if (end.closed) ends.end = std::move(end.closed->start);
     const ModelTables tables(model, ends.independent);
+    make_given(tables, ends);
+    if (is_periodic)
+        if (std::optional<Complaint> why = make_periodic(tables, ends)) return why;
     if (std::optional<Complaint> why = why_undetermined(tables, ends)) return why;
     ends.start = settled(tables, ends, Condition::At::start, ends.start);
     if (ends.is_end_guessed) ends.end = settled(tables, ends, Condition::At::end, ends.end);
@@ -78,8 +84,9 @@ TriedEnds try_close_ends(const Model& model, const Problem& problem, double star
     ends.start.t = start;
     ends.end.t = end;
     ends.components = conditions.components;
-    if (ends.has_components()) {
-        if (std::optional<Complaint> why = close_guesses(model, ends)) return {{}, std::move(*why)};
+    if (conditions.has_components()) {
+        if (std::optional<Complaint> why = close_guesses(model, ends, policy, conditions.is_periodic))
+            return {{}, std::move(*why)};
         return {std::move(ends), {}};
     }
     std::optional<Complaint> why = close_end(model, ends.end, ends.at_end, policy, prepared, ends);
