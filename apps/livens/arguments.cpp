@@ -162,6 +162,12 @@ void add_solve_command(CLI::App& app, Arguments& a)
     add_file(solve, "--guess", given->guess,
              "run to begin with, where conditions at both ends are given: a motion of the same bodies")
         ->type_name("RUN.nc");
+    solve
+        .add_option("--roots", given->roots,
+                    "number of motions to look for, where conditions at both ends are given; the others are "
+                    "written to NAME.2.nc, ..")
+        ->check(CLI::Range(1, 32))
+        ->type_name("N");
     add_force(solve, given->force);
     solve
         .add_option("-j,--jobs", given->jobs,

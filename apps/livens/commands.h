@@ -27,6 +27,7 @@ struct SolveArguments {
     std::vector<std::string> scenarios;   ///< one or several
     std::string output;   ///< empty: the scenario's stem with .nc in the current folder; a folder for several
     std::string csv;      ///< empty: none
+    int roots = 0;        ///< motions to look for; 0: as the scenario says
     std::string guess;    ///< run that motions between both ends begin with; empty: none
     bool force = false;   ///< whatever stands where files go
     int jobs = 0;         ///< scenarios at a time; 0: one for each processor

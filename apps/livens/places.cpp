@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "console.h"
 #include "failure.h"
 #include "livens/io/results.h"
 
@@ -111,6 +112,33 @@ void write_result(const fs::path& output, const Model& model, const Run& run, bo
 void check_differs(const fs::path& file, const fs::path& other, const char* why)
 {
     if (same_file(file, other)) refuse(file, why);
+}
+
+void check_several(const SolveArguments& arguments)
+{
+    if (!arguments.csv.empty())
+        throw failure(exit_usage,
+                      "'--csv' takes the samples of one scenario; 'livens export' makes them of any result");
+    std::error_code unknown;   // what cannot be looked at is no folder to write to
+    if (!arguments.output.empty() && !fs::is_directory(arguments.output, unknown))
+        throw failure(exit_usage, "'--output' has to be a folder where several scenarios are solved; '" +
+                                      plain(arguments.output) + "' is none");
+}
+
+fs::path root_place(fs::path output, std::size_t i)
+{
+    return output.replace_extension("." + std::to_string(i + 2) + ".nc");
+}
+
+bool is_converged_run(const fs::path& file)
+{
+    std::error_code unknown;
+    if (!fs::is_regular_file(file, unknown)) return false;
+    try {
+        return read_run_head(file).run.report.reached_end();
+    } catch (const IoError&) {
+        return false;
+    }
 }
 
 }   // namespace livens::program

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "commands.h"
 #include "livens/io/exports.h"
 
 namespace livens::program {
@@ -35,5 +36,11 @@ void write_result(const std::filesystem::path& output, const Model& model, const
 void check_inputs(const std::filesystem::path& file, const Scenario& scenario);
 /// Throws if `file` is `other`, which `why` names.
 void check_differs(const std::filesystem::path& file, const std::filesystem::path& other, const char* why);
+/// What the arguments say of one scenario alone, or of a folder.
+void check_several(const SolveArguments& arguments);
+/// NAME.2.nc and so on, beside NAME.nc.
+std::filesystem::path root_place(std::filesystem::path output, std::size_t i);
+/// Whether a run stands there that came to its end.
+bool is_converged_run(const std::filesystem::path& file);
 
 }   // namespace livens::program

@@ -67,17 +67,6 @@ Places places(const Scenario& scenario, const SolveArguments& arguments)
     return p;
 }
 
-void check_several(const SolveArguments& arguments)
-{
-    if (!arguments.csv.empty())
-        throw failure(exit_usage,
-                      "'--csv' takes the samples of one scenario; 'livens export' makes them of any result");
-    std::error_code unknown;   // what cannot be looked at is no folder to write to
-    if (!arguments.output.empty() && !fs::is_directory(arguments.output, unknown))
-        throw failure(exit_usage, "'--output' has to be a folder where several scenarios are solved; '" +
-                                      plain(arguments.output) + "' is none");
-}
-
 /// Memory that checks and writing will want, asked for before solving and given back behind it: a motion that
 /// was solved must not be lost for want of it. Nothing of it is touched: it costs address space alone.
 class Reserve {
@@ -96,6 +85,7 @@ private:
 
 struct Solved {
     Run run;
+    std::vector<Run> roots;   ///< the others that were found
     double solve_seconds = 0;
     double estimate_seconds = 0;
     int signal = 0;   ///< that cancelled the solution
@@ -147,7 +137,9 @@ Solved solve_job(Job& job, double share, ProgressLine& line)
 
     const Clock::time_point begin = Clock::now();
     reserve.give_back();
-    solved.run = judged_run(scenario, std::move(motion), [] { return InterruptWatch::signal() == 0; });
+    const auto goes_on = [] { return InterruptWatch::signal() == 0; };
+    solved.roots = judged_roots(scenario, motion, goes_on);
+    solved.run = judged_run(scenario, std::move(motion), goes_on);
     job.detail(fmt::format("checked in {:.3g} s", seconds_since(begin)));
     solved.signal = InterruptWatch::signal();   // also where it came too late to stop anything
     return solved;
@@ -220,15 +212,6 @@ void write_record(const std::string& record, Job& job)
     }
 }
 
-/// What to do with a result of this kind.
-std::string next_step(const Run& run, const Places& p)
-{
-    const std::string file = quoted(p.output.string());
-    if (!run.report.reached_end() || run.body_names.empty()) return "next: livens info " + file;
-    return fmt::format("next: livens sample {} --body {} --at {:.6g}", file, quoted(run.body_names.front()),
-                       run.motion.end());
-}
-
 std::string summary_of(const Solved& solved, const Places& p, bool verbose)
 {
     const Run& run = solved.run;
@@ -256,18 +239,14 @@ std::string summary_of(const Solved& solved, const Places& p, bool verbose)
                                               : "no factorisation"));
     add_figures(summary, run, verbose);
     add_notes(summary, run);
-    summary.figure("written", plain(p.output.string()) + (p.csv.empty() ? "" : ", " + plain(p.csv.string())));
+    std::string written = plain(p.output.string()) + (p.csv.empty() ? "" : ", " + plain(p.csv.string()));
+    for (std::size_t i = 0; i < solved.roots.size(); ++i)
+        written += ", " + plain(root_place(p.output, i).string());
+    summary.figure("written", written);
     if (run.report.reached_end() && !run.body_names.empty())
         summary.aside("see it: livens view " + plain(quoted(p.output.string())));
-    summary.aside(plain(next_step(run, p)));
+    summary.aside(plain(next_step(run, p.output.string())));
     return summary.text();
-}
-
-/// What a guess is wrong in is told before anything is solved; a run that fails must not replace it.
-void check_guess(const Scenario& scenario, const Run& guess, const Places& p, const SolveArguments& arguments)
-{
-    check_differs(p.output, arguments.guess, "it is the guess of the motion");
-    guess_of(scenario, guess);   // throws
 }
 
 /// All of them are read, and all places looked at, before the first is solved.
@@ -281,8 +260,14 @@ std::vector<Job> read_jobs(const SolveArguments& arguments, const Common& common
         const Clock::time_point begin = Clock::now();
         std::vector<Diagnostic> warnings;
         Scenario scenario = load_scenario(file, common, &warnings);
+        if (arguments.roots > 0) scenario.options.roots = arguments.roots;
         Places p = places(scenario, arguments);
-        if (guess) check_guess(scenario, *guess, p, arguments);
+        for (int i = 0; i + 1 < scenario.options.roots; ++i)
+            check_place(root_place(p.output, static_cast<std::size_t>(i)), begins_as_run, arguments.force);
+        if (guess) {   // what is wrong with it is told before anything is solved
+            check_differs(p.output, arguments.guess, "it is the guess of the motion");
+            guess_of(scenario, *guess);
+        }
         say_detail(fmt::format("read and checked the scenario in {:.3g} s", seconds_since(begin)));
         for (const Job& job : jobs) {
             check_inputs(p.output, job.scenario);
@@ -299,12 +284,24 @@ std::vector<Job> read_jobs(const SolveArguments& arguments, const Common& common
     return jobs;
 }
 
+/// A search between both ends that finds no motion leaves an older run that has one where it is.
+Places places_of(const Solved& solved, Job& job)
+{
+    Places p = job.places;
+    if (job.scenario.conditions.has_state() || solved.run.report.reached_end() || job.force ||
+        !is_converged_run(p.output))
+        return p;
+    job.complaints.push_back("the older run in '" + p.output.string() + "' has a motion and is kept");
+    p.record = record_of(p.output.replace_extension(".failed.nc"));
+    return p;
+}
+
 /// Solves, writes, and keeps what there is to say, which is found before: where memory ends over it, an older
 /// result stays.
 void do_job(Job& job, const Common& common, double share, ProgressLine& line)
 {
     const Solved solved = solve_job(job, share, line);
-    const Places& p = job.places;
+    const Places p = places_of(solved, job);
     job.exit_code = exit_code_of(solved);
     const SolveReport& report = solved.run.report;
     if (job.exit_code != exit_ok)
@@ -319,6 +316,8 @@ void do_job(Job& job, const Common& common, double share, ProgressLine& line)
     const Clock::time_point writing = Clock::now();
     write_result(p.output, job.scenario.model, solved.run, job.force);
     write_record(record, job);
+    for (std::size_t i = 0; i < solved.roots.size(); ++i)
+        write_result(root_place(p.output, i), job.scenario.model, solved.roots[i], job.force);
     if (!p.csv.empty()) {
         check_export_place(p.csv, export_formats().front(), p.output, job.force);
         write_csv(p.csv, job.scenario.model, solved.run,

@@ -103,6 +103,10 @@ void add_figures(Summary& summary, const Run& run, bool verbose)
                                    number(s.zigzag_positions), number(s.zigzag_momenta)));
         summary.figure("residual", number(report.residual_norm));
     }
+    if (report.arrival > 0)
+        summary.figure("arrival",
+                       fmt::format("a rate at the start that is off by 1 mm/s moves it by {:.3g} mm at most",
+                                   report.arrival));
     if (report.condition_1 > 0)
         summary.figure("condition", fmt::format("{} in the 1-norm, {} in the 2-norm; {} as it is factorised",
                                                 number(report.condition_1), number(report.condition_2),
@@ -127,6 +131,13 @@ std::string quoted(const std::string& argument)
     std::string out = "'";
     for (const char c : argument) out += c == '\'' ? "'\\''" : std::string(1, c);
     return out + "'";
+}
+
+std::string next_step(const Run& run, const std::string& file)
+{
+    if (!run.report.reached_end() || run.body_names.empty()) return "next: livens info " + quoted(file);
+    return fmt::format("next: livens sample {} --body {} --at {:.6g}", quoted(file),
+                       quoted(run.body_names.front()), run.motion.end());
 }
 
 }   // namespace livens::program

@@ -43,5 +43,7 @@ void add_notes(Summary& summary, const Run& run);
 
 /// An argument as a shell takes it.
 std::string quoted(const std::string& argument);
+/// What to do with a result of this kind, in this file.
+std::string next_step(const Run& run, const std::string& file);
 
 }   // namespace livens::program

@@ -254,6 +254,26 @@ class Solution(Series):
         return growth
 
     @property
+    def arrival(self) -> float:
+        """What the arrival is to the start, of motions between both ends of time, s.
+
+        By how many m a rate that is off by 1 m/s at the start moves the motion at its end, at most: of free
+        velocities at the start, the one that moves bodies most (turns count by the model length). It is found with the
+        factors of all elements at once. nan: the state is given at one end, or it is not known.
+        """
+        value = self.figures["arrival"]
+        return float("nan") if value is None else float(value)
+
+    @property
+    def roots(self) -> list[Solution]:
+        """The other motions that ``solve(.., roots=4)`` found, by their effort; this one has the least.
+
+        Their effort (the kinetic energy over all of time, J s) and the turns of joints are in :attr:`notes`. There may
+        be more than were found. A solution that is saved and read again has none.
+        """
+        return [Solution(one) for one in self._result.roots]
+
+    @property
     def nodes(self) -> Floats:
         """[r, d1, d2, d3] of all bodies at all nodes of all elements, shape (nodes, bodies, 4, 3); a view."""
         nodes: Floats = self._result.nodes
@@ -410,6 +430,8 @@ class Solution(Series):
             if figure in ("estimated_error", "max_constraint_violation", "energy_drift", "angular_momentum_drift") \
                     and f[figure] is not None:
                 rows.append((name, f"{f[figure]:.1e} ({meaning})"))
+        if f["arrival"] is not None:
+            rows.append(("arrival", f"a rate at the start that is off by 1 mm/s moves it by {f['arrival']:.3g} mm at most"))
         if f["horizon"] is not None:
             rows.append(("horizon", f"{f['horizon']:.3g} s: beyond it rounding decides"))
         return rows + [("note", note) for note in self.notes if note not in self.reasons]

@@ -40,8 +40,8 @@ _SPINS = ("angular_velocity", "angular_velocity_body")
 
 def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, elements: int | None = None,
           output: Number | Vector | None = None, breaks: Literal["from_loads", "ignore"] | None = None,
-          method: Method | str | None = None, start: End = None, end: End = None, guess: Solution | None = None,
-          progress: ProgressArgument = False, strict: bool = False, **options: Unpack[MethodOptions]) -> Solution:
+          method: Method | str | None = None, start: End = None, end: End = None, periodic: bool | None = None,
+          guess: Solution | None = None, progress: ProgressArgument = False, strict: bool = False, **options: Unpack[MethodOptions]) -> Solution:
     """Solves the motion of a model.
 
     Arguments that are not given follow from the model's tables ``[time]``, ``[method]``, ``[start]``, ``[end]``, or
@@ -60,11 +60,12 @@ def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, el
             or single quantities, ``{"pivot.angle": 0}``, as in ``[start.known]``.
         end: What is prescribed at the final time, by default nothing. Two halves must be prescribed in all, or
             twice as many quantities as the joints leave motions free.
+        periodic: Whether the motion ends in the state in which it begins, but for whole turns; time is its period then.
         guess: A motion of the same bodies to begin with, where ``start`` and ``end`` prescribe one half each.
         progress: True for a progress line, or a function.
         strict: Whether to raise :class:`SolveError` with the solution so far instead of issuing a warning.
         **options: Options of all methods: ``tolerance``, ``max_iterations``, ``estimate``, ``growth``,
-            ``condition``.
+            ``condition``; ``roots``: how many motions are looked for between both ends.
 
     Returns:
         The solution. If it did not converge or is suspect, ``success`` is False and a :class:`SolveWarning` has
@@ -87,8 +88,8 @@ def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, el
         raise TypeError(f"solve() takes a livens.Model first, not {type(model).__name__}")
     if not (guess is None or isinstance(guess, Solution)):
         raise TypeError(f"a guess is a livens.Solution, not {type(guess).__name__}; lv.load_solution() reads one from a file")
-    overrides = _overrides(model, time, dict(accuracy=accuracy, elements=elements, output=output, breaks=breaks),
-                           method, options, start, end)
+    of_time = dict(accuracy=accuracy, elements=elements, output=output, breaks=breaks, periodic=periodic)
+    overrides = _overrides(model, time, of_time, method, options, start, end)
     scenario = model._scenario(overrides)
     shown = _Progress(progress)
     try:
@@ -314,7 +315,7 @@ def _method(model: Model, method: Method | str | None, options: Mapping[str, Any
     for name, value in options.items():
         if name not in known or name == "family":
             names = [n for n in known if n != "family"]
-            of_solve = ["time", "accuracy", "elements", "output", "breaks", "method", "start", "end", "guess", "progress",
+            of_solve = ["time", "accuracy", "elements", "output", "breaks", "method", "start", "end", "periodic", "guess", "progress",
                         "strict"]
             raise fault("unknown-key", f"solve() has no keyword '{name}'", name,
                         of_keyword(name) or _core.suggestion(name, names + of_solve)

@@ -24,6 +24,7 @@ struct Result {
     Method method;   ///< that was taken
     double solve_seconds = 0;
     double estimate_seconds = 0;
+    std::vector<std::shared_ptr<Result>> roots{};   ///< the others that were found, see Solution::roots
 };
 
 /// A view of numbers that `owner` keeps alive: nothing is copied, and NumPy refuses to write to it.

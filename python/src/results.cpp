@@ -251,8 +251,9 @@ Result from_bytes(const nb::bytes& bytes)
 }
 
 /// What is doubtful of it. Throws what Python's signals throw.
-std::string export_to(const Result& r, const std::string& format, const std::string& result, const std::string& file,
-               bool force, int instants, const std::vector<std::string>& units, const nb::dict& picture)
+std::string export_to(const Result& r, const std::string& format, const std::string& result,
+                      const std::string& file, bool force, int instants,
+                      const std::vector<std::string>& units, const nb::dict& picture)
 {
     PictureOptions o;
     const auto take = [&](const char* name, auto& member) {
@@ -311,6 +312,7 @@ void add_results(nb::module_& m)
 {
     nb::class_<Result> result(m, "Result");
     result.def_prop_ro("converged", [](const Result& r) { return r.run.report.converged(); })
+        .def_prop_ro("roots", [](const Result& r) { return r.roots; })
         .def_prop_ro("reached_end", [](const Result& r) { return r.run.report.reached_end(); })
         .def_prop_ro("status", [](const Result& r) { return to_string(r.run.report.status); })
         .def_prop_ro("message", [](const Result& r) { return r.run.report.message; })

@@ -175,8 +175,12 @@ Result judged(Unjudged&& motion, const std::function<bool()>& goes_on)
     const double seconds = motion.solved.solve_seconds,
                  estimate_seconds = motion.solved.solution.estimate_seconds;
     const Patience patience(goes_on);
-    return {motion.scenario, judged_run(*motion.scenario, std::move(motion.solved), {}), method, seconds,
-            estimate_seconds};
+    std::vector<std::shared_ptr<Result>> roots;
+    for (Run& run : judged_roots(*motion.scenario, motion.solved, {}))
+        roots.push_back(std::make_shared<Result>(Result{motion.scenario, std::move(run), method, 0, 0, {}}));
+    return {motion.scenario,  judged_run(*motion.scenario, std::move(motion.solved), {}),
+            method,           seconds,
+            estimate_seconds, std::move(roots)};
 }
 
 /// Before the process ends.

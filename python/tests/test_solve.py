@@ -132,6 +132,43 @@ def test_conditions_by_component() -> None:
         lv.solve(m, 2, elements=4, start={"bell.x": 0})
 
 
+def test_the_arrival_is_told_between_both_ends() -> None:
+    """A ball is moved by what it flies; of a march nobody asks."""
+    m = lv.Model("throw", gravity=(0, 0, -9.81))
+    m.add_body("ball", lv.point(mass=0.4), velocity=(1, 0, 1))
+    sol = lv.solve(m, 2, start={"ball.position": (0, 0, 2)}, end={"ball.position": (12, 0, 3)})
+    assert sol.success and sol.arrival == pytest.approx(2, abs=1e-12)
+    assert "1 mm/s" in repr(sol) and np.isnan(lv.solve(m, 2, elements=4).arrival)
+    thrown = lv.solve(m, 2, start={"ball.position": (0, 0, 2), "ball.speed": 12, "ball.vy": 0}, end={"ball.z": 3})
+    assert thrown.success and np.linalg.norm(thrown["ball"].velocity[0]) == pytest.approx(12, abs=1e-11)
+
+
+def test_several_motions() -> None:
+    m = lv.Model("hanging", gravity=(0, 0, -9.81))
+    rod = m.add_body("rod", lv.box(1, 0.05, 0.05, density=1000), position=(0, 0, -0.5), rotation_vector=(0, "90 deg", 0))
+    m.add_revolute("hook", "world", rod, at=(0, 0, 0), axis=(0, 1, 0))
+    there = lv.positions({"rod": {"position": (0, 0, -0.5), "rotation_vector": (0, "90 deg", 0)}})
+    sol = lv.solve(m, 1, elements=24, method=lv.Lobatto(6), start="positions", end=there, roots=3)
+    assert sol.success and len(sol.roots) == 2 and sol(0.5)["rod"].position[2] == pytest.approx(-0.5, abs=1e-9)
+    assert all(one.success and one(0.5)["rod"].position[2] > -0.4 for one in sol.roots)
+    assert any("effort" in note and "rounds" in note for note in sol.notes)
+    with pytest.raises(lv.InputError, match="one motion"):
+        lv.solve(m, 1, roots=3)
+
+
+def test_periodic_motions() -> None:
+    m = lv.Model("driven", gravity=(0, 0, -9.81))
+    rod = m.add_body("rod", lv.box(1, 0.05, 0.05, density=1000), position=(0, 0, -0.5), rotation_vector=(0, "90 deg", 0))
+    pivot = m.add_revolute("pivot", "world", rod, at=(0, 0, 0), axis=(0, 1, 0))
+    with pytest.raises(lv.InputError, match="any instant"):
+        lv.solve(m, 1, elements=24, periodic=True)
+    m.add_actuator("motor", pivot, inputs={"w": "pivot.angle_rate"}, expression="5*sin(2*pi*t) - 3*w")
+    sol = lv.solve(m, 1, accuracy=1e-9, periodic=True)
+    assert sol.success
+    np.testing.assert_allclose(sol["rod"].velocity[0], sol["rod"].velocity[-1], atol=1e-8)
+    later = lv.solve(m, 20, accuracy=1e-10)
+    np.testing.assert_allclose(later["rod"].position[-1], sol["rod"].position[0], atol=1e-7)
+
 
 def test_what_is_not_good_is_told(pendulum: lv.Model) -> None:
     coarse: dict[str, Any] = dict(elements=4, method="midpoint")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Conditions by component: quantities at the start, at the end and alike at both, in place of what is known
 // of all bodies.
+#include <algorithm>
 #include <complex>
 #include <limits>
 #include <numbers>
@@ -336,6 +337,93 @@ TEST(Components, HaveErrorsWherePlacesAreStated)
     EXPECT_GT(s.estimate.largest, 0.1 * off);
 }
 
+/// Places of all bodies at one end, as they are given, beside components at the other.
+TEST(Components, StandBesidePlacesOfAllBodies)
+{
+    for (const Sample& run : {links_run(), bricks_run(), four_bar_run(), box_run()}) {
+        std::vector<Condition> rates;
+        const int n = run.model.n_bodies();
+        if (run.title == "four-bar")
+            rates = run.conditions({}, {"crank shaft.angle_rate"});
+        else if (run.title == "hinged links")
+            rates = run.conditions({}, {"shoulder.angle_rate", "elbow.angle"});
+        else if (n == 1)
+            rates = run.conditions({}, box_rates);
+        else
+            rates = run.conditions({}, {"lower.x", "lower.y", "upper.rotation_x", "lower.vx", "lower.vz",
+                                        "lower.angular_velocity_y"});
+        State guess = run.start;
+        for (Matrix34& V : guess.V) V *= 1.1;
+        const Problem problem{{guess, Known::positions, {}, Known::nothing, rates}};
+        const Solution s =
+            solve(run.model, problem, make_time_mesh(0, run.duration, run.n), Lobatto{6, 0}, exact());
+        ASSERT_TRUE(s.report.converged()) << run.title << ": " << s.report.message;
+        EXPECT_LE(largest_difference(s.motion, run.motion), 1e-11) << run.title;
+        // places that are not met are told, of all bodies
+        for (int b = 0; b < n; ++b) {
+            Solution off = s;
+            off.motion.X.coefficient(0, 0)[static_cast<std::size_t>(12 * b)] += 1e-6;
+            judge(run.model, problem, exact(), off);
+            const bool is_told = std::ranges::any_of(off.verdict.reasons, [](const std::string& reason) {
+                return reason.starts_with("what is given at the start is not met");
+            });
+            EXPECT_TRUE(is_told) << run.title << ", body " << b << ": " << off.report.message;
+        }
+    }
+}
+
+/// Elements are found for an accuracy, as between places and momenta.
+TEST(Components, AreMetToAnAccuracy)
+{
+    for (const Sample& run : {links_run(), ::livens::tests::run("four-bar", four_bar(), 0.2, 1, 160)}) {
+        const bool is_loop = run.title == "four-bar";
+        const std::vector<Condition> conditions =
+            is_loop ? run.conditions({"crank shaft.angle_rate"}, {"rocker shaft.angle"})
+                    : run.conditions({"shoulder.angle", "lower.vx"}, {"elbow.angle", "lower.y"});
+        State guess = run.start;
+        for (Matrix34& V : guess.V) V *= 1.05;
+        const Problem problem{{guess, Known::nothing, {}, Known::nothing, conditions}};
+        for (const double accuracy : {1e-5, 1e-9}) {
+            const Solution s = solve(run.model, problem, Span{0, run.duration, accuracy}, Lobatto{0});
+            ASSERT_TRUE(s.report.converged()) << run.title << ": " << s.report.message;
+            double error = 0;
+            for (int e = 0; e <= s.motion.n_elements(); ++e)
+                error = std::max(error, distance(s.motion.at_end(e), run.motion.at(s.motion.mesh.ends[e])).X);
+            tell(run.title + ": elements", s.motion.n_elements());
+            tell(run.title + ": true error", error);
+            EXPECT_LE(error, accuracy * run.model.length()) << run.title;
+            EXPECT_LE(s.verdict.estimated_error, accuracy) << run.title;
+            EXPECT_LE(s.motion.n_elements(), 20) << run.title << ", " << accuracy;
+        }
+    }
+}
+
+/// Speeds and energies in place of rates: a march from what is found has them.
+TEST(Components, AreSpeedsAndEnergies)
+{
+    const Sample links = links_run();
+    for (const std::vector<std::string>& names :
+         {std::vector<std::string>{"lower.speed"}, {"energy"}, {"upper.kinetic_energy"}, {"lower.energy"}}) {
+        std::vector<Condition> conditions = links.conditions(link_places, {});
+        for (const Condition& one : links.conditions({"shoulder.angle_rate"}, {})) conditions.push_back(one);
+        for (const Condition& one : links.conditions({}, names)) conditions.push_back(one);
+        expect_found(links, conditions, names[0]);
+    }
+    // that of all bodies is that of the parts, and what is stored in springs comes to it
+    Model model = links.model;
+    const State& at = links.start;
+    std::vector<Matrix34> stated;
+    for (const Body& body : model.bodies()) stated.push_back(body.X);
+    const auto value = [&](const std::string& name) {
+        return value_of(state_quantities(model, name).at(0), stated, at.X, at.V);
+    };
+    const double parts = value("upper.energy") + value("lower.energy");
+    EXPECT_NEAR(value("energy"), parts, 1e-12 * std::abs(parts));
+    model.add_load(spring_damper("spring", world, {0, 3, 0}, 1, {}, {100, 0, 0.5, 0, {}}));
+    const double length = norm(at.X[1].column(0) - Vector3{0, 3, 0});
+    EXPECT_NEAR(value("energy") - parts, 50 * (length - 0.5) * (length - 0.5), 1e-9);
+}
+
 /// A rotation vector says nothing at half a turn; at the other end nobody asks.
 TEST(Components, NeedNoValueWhereTheyAreNotStated)
 {
@@ -406,10 +494,20 @@ TEST(Components, AreRefusedWhereTheyCannotBeSolvedFor)
     };
     for (const Method& method : std::vector<Method>{Radau{4}, Mixed{}, Midpoint{}, Endpoint{}})
         EXPECT_EQ(code(problem, mesh, method, links.model), "conditions-method") << name_of(method);
-    EXPECT_EQ(code(problem, Span{0, 1, 1e-6}, Lobatto{4}, links.model), "conditions-method");
     Problem mixed = problem;
     mixed.conditions.at_start = Known::positions;
     EXPECT_EQ(code(mixed, mesh, Lobatto{6, 0}, links.model), "boundary-conditions");
+    mixed.conditions.components = links.conditions({}, link_places);
+    EXPECT_EQ(code(mixed, mesh, Lobatto{6, 0}, links.model), "none");
+    mixed.conditions.at_start = Known::momenta;
+    EXPECT_EQ(code(mixed, mesh, Lobatto{6, 0}, links.model), "boundary-conditions");
+    mixed.conditions.at_start = Known::state;
+    EXPECT_EQ(code(mixed, mesh, Lobatto{6, 0}, links.model), "conditions-too-many");
+    for (const char* name : {"upper.speed", "lower.kinetic_energy"}) {
+        Problem still = problem;
+        still.conditions.components[1] = {state_quantities(links.model, name).at(0), 0, At::start};
+        EXPECT_EQ(code(still, mesh, Lobatto{6, 0}, links.model), "conditions-value") << name;
+    }
     Problem infinite = problem;
     infinite.conditions.components[0].value = std::numeric_limits<double>::infinity();
     EXPECT_EQ(code(infinite, mesh, Lobatto{6, 0}, links.model), "not-finite");

@@ -1594,3 +1594,67 @@ livens_mutant(NAME curves_end_at_folds
               NEW [[norm]]
               TESTS_OF unit_spacetime
               MUST_FAIL Curve.PassesFoldsWhereTheWayTurnsBack)
+
+# What an iteration that failed came to is thrown away, so that nothing can be looked at.
+livens_mutant(NAME iterates_are_thrown_away
+              FILE spacetime/solve_mesh.cpp
+              OLD [[w.keeps_iterate = is_nodal(method);]]
+              NEW [[w.keeps_iterate = false;]]
+              TESTS_OF convergence
+              MUST_FAIL LobattoEnds.ThatAreNotFoundLeaveTheLastIterate)
+
+# The arrival is told by what places at the start move it by, not rates.
+livens_mutant(NAME arrival_by_places
+              FILE spacetime/accuracy/arrival.cpp
+              OLD [[arrival = in_lengths(tables, flow.arrival, f, f);]]
+              NEW [[arrival = in_lengths(tables, flow.arrival, 0, f);]]
+              TESTS_OF convergence
+              MUST_FAIL Arrival.IsWhatMarchesFromChangedStartsSay)
+
+# One motion is found twice.
+livens_mutant(NAME one_root_twice
+              FILE spacetime/roots.cpp
+              OLD [[return off <= std::max(one_motion, 10 * errors);]]
+              NEW [[return off < 0;]]
+              TESTS_OF convergence
+              MUST_FAIL Roots.AreDistinct)
+
+# A motion that comes back once is taken for a periodic one.
+livens_mutant(NAME one_period_is_enough
+              FILE spacetime/accuracy/judging.cpp
+              OLD [[if (second.report.converged() && off <= allowed) return "";]]
+              NEW [[if (off < 1e30) return "";]]
+              TESTS_OF convergence
+              MUST_FAIL Periodic.AnotherPeriodOfWhatDrivesIsSuspect)
+
+# Whatever moves is taken for driven.
+livens_mutant(NAME all_is_driven
+              FILE spacetime/march/components.cpp
+              OLD [[if (F != first) return true;]]
+              NEW [[return true;]]
+              TESTS_OF convergence
+              MUST_FAIL Periodic.MotionsOfWhatNothingDrivesAreRefused)
+
+# Turns are conditions of periodic motions.
+livens_mutant(NAME periods_count_turns
+              FILE spacetime/nodal/end_conditions.cpp
+              OLD [[if (condition.forgets_turns && q.counts_turns())]]
+              NEW [[if (false)]]
+              TESTS_OF convergence
+              MUST_FAIL Periodic.MotionsMayTurnRound)
+
+# Of all places that are given at an end those are forgotten that no condition stands for.
+livens_mutant(NAME places_beside_are_not_compared
+              FILE spacetime/accuracy/met_ends.cpp
+              OLD [[return ends.has_components() ? whole : at;]]
+              NEW [[return ends.has_components() ? Known::nothing : at;]]
+              TESTS_OF convergence
+              MUST_FAIL Components.StandBesidePlacesOfAllBodies)
+
+# The energy of a body has the sign of its weight wrong.
+livens_mutant(NAME energy_of_weight
+              FILE multibody/state_quantities.cpp
+              OLD [[kinetic_of(body, V[at]) - dot(weight, X[at])]]
+              NEW [[kinetic_of(body, V[at]) + dot(weight, X[at])]]
+              TESTS_OF convergence
+              MUST_FAIL Components.AreSpeedsAndEnergies)

@@ -269,6 +269,84 @@ class Solve(ProgramTest):
         self.assertEqual((self.folder / "first.nc").read_bytes(), before)
         self.assertFalse((self.folder / "third.nc").exists())
 
+    def test_a_search_that_fails_keeps_its_iterate_and_an_older_motion(self):
+        """One step does not find how to throw a bob to the other side of its hook; from there it is near."""
+        text = """format = 1
+gravity = [0, 0, -9.81]
+[[body]]
+name = "bob"
+shape = { point = true }
+mass = 0.2
+position = [0.8, 0, -0.6]
+end = { position = [0, 0.6, -0.8] }
+[[joint]]
+name = "string"
+type = "rod"
+between = ["world", "bob"]
+points = [[0, 0, 0], [0, 0, 0]]
+[time]
+end = 1
+elements = 20
+[method]
+max_iterations = STEPS
+[start]
+given = "positions"
+[end]
+given = "positions"
+"""
+        self.write("bob.toml", text.replace("STEPS", "30"))
+        self.write("short.toml", text.replace("STEPS", "1"))
+        self.expect(0, "solve", "bob.toml", "-o", "bob.nc", "-q")
+        good = (self.folder / "bob.nc").read_bytes()
+        done = self.expect(4, "solve", "short.toml", "-o", "bob.nc")
+        self.assertIn("the last iterate is kept", done.out)
+        self.assertIn("is kept", done.err)
+        self.assertEqual((self.folder / "bob.nc").read_bytes(), good)
+        self.assertIn("the last iterate is kept", self.expect(0, "info", "bob.failed.nc").out)
+        self.expect(0, "solve", "bob.toml", "--guess", "bob.failed.nc", "-o", "again.nc", "-q")
+        self.expect(4, "solve", "short.toml", "-o", "bob.nc", "--force", "-q")   # as is asked for
+        self.assertNotEqual((self.folder / "bob.nc").read_bytes(), good)
+
+    def test_several_motions_and_their_files(self):
+        """A rod that hangs at both ends of a second rests, or swings either way, or turns."""
+        self.write("rod.toml", """format = 1
+gravity = [0, 0, -9.81]
+[[body]]
+name = "rod"
+shape = { box = [1, 0.05, 0.05] }
+density = 1000
+position = [0, 0, -0.5]
+rotation_vector = [0, "90 deg", 0]
+end = { position = [0, 0, -0.5], rotation_vector = [0, "90 deg", 0] }
+[[joint]]
+name = "hook"
+type = "revolute"
+between = ["world", "rod"]
+at = [0, 0, 0]
+axis = [0, 1, 0]
+[time]
+end = 1
+elements = 24
+[start]
+given = "positions"
+[end]
+given = "positions"
+""")
+        told = self.expect(0, "solve", "rod.toml", "-o", "rod.nc", "--roots", "3").out
+        for words in ("motion 3 of 3", "effort", "rounds", "rod.2.nc", "rod.3.nc", "off by 1 mm/s"):
+            self.assertIn(words, " ".join(told.split()))
+        heights = []
+        for name in ("rod.nc", "rod.2.nc", "rod.3.nc"):
+            done = self.expect(0, "sample", name, "--body", "rod", "--at", "0.5", "--json")
+            heights.append(json.loads(done.out)["position"][2])
+        self.assertAlmostEqual(heights[0], -0.5, 9)
+        self.assertTrue(min(heights[1:]) > -0.4, heights)
+        arrival = json.loads(self.expect(0, "info", "rod.nc", "--json").out)["arrival"]
+        self.assertGreater(arrival, 0)
+        (self.folder / "rod.2.nc").write_text("a file of somebody else")
+        self.expect(IO, "solve", "rod.toml", "-o", "rod.nc", "--roots", "3")
+        self.assertEqual((self.folder / "rod.2.nc").read_text(), "a file of somebody else")
+
     def test_instructions_are_pinned_and_named(self):
         self.write("small.toml", SMALL)
         def bytes_of(*arguments, **variables):

@@ -57,7 +57,7 @@ State going_on(const Motion& motion, double t)
 std::function<State(double t)> guess_of(const Scenario& scenario, const Run& run)
 {
     const Conditions& given = scenario.conditions;
-    if (given.at_start == Known::state || given.at_end == Known::state)
+    if (given.has_state())
         throw InputError({"guess-unused", given.at_start == Known::state ? "start.given" : "end.given",
                           "a guess goes with conditions at both ends of time", "state",
                           "positions or momenta at each end",

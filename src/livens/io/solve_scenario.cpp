@@ -25,6 +25,8 @@ SolvedScenario solve_scenario(const Scenario& scenario, SolveOptions options,
     solved.solve_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() -
                            solved.solution.estimate_seconds;
     estimate(scenario.model, solved.problem, scenario.method, options, solved.solution);
+    for (Solution& root : solved.solution.roots)
+        estimate(scenario.model, solved.problem, scenario.method, options, root);
     return solved;
 }
 
@@ -55,6 +57,15 @@ void tell_limits(const Scenario& scenario, Run& run)
 }
 
 }   // namespace
+
+std::vector<Run> judged_roots(const Scenario& scenario, SolvedScenario& solved,
+                              const std::function<bool()>& goes_on)
+{
+    std::vector<Run> runs;
+    for (Solution& root : std::exchange(solved.solution.roots, {}))
+        runs.push_back(judged_run(scenario, {std::move(root), solved.problem}, goes_on));
+    return runs;
+}
 
 Run judged_run(const Scenario& scenario, SolvedScenario&& solved, const std::function<bool()>& goes_on)
 {

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "livens/io/results.h"
 #include "livens/io/scenario.h"
@@ -26,5 +27,9 @@ SolvedScenario solve_scenario(const Scenario& scenario, SolveOptions options,
 
 /// judge(), and the run with all that the scenario says of it. `goes_on`: see judge().
 Run judged_run(const Scenario& scenario, SolvedScenario&& solved, const std::function<bool()>& goes_on);
+
+/// The other motions that were found, see Solution::roots, which they leave.
+std::vector<Run> judged_roots(const Scenario& scenario, SolvedScenario& solved,
+                              const std::function<bool()>& goes_on);
 
 }   // namespace gnu::visibility("default")]]livens

@@ -34,6 +34,8 @@ const char* grade_of(double drift)
 
 std::string kept_of(const Run& run, double end)
 {
+    const bool is_iterate = run.report.n_elements == 0 && end > run.report.failed_at;
+    if (is_iterate) return "no motion was found: the last iterate is kept";
     if (run.report.n_elements == 0) return "no element was solved: only the start is known";
     return fmt::format("the motion is known up to {:.6g} s", end);
 }

@@ -4,6 +4,7 @@
 #include "livens/multibody/state_quantities.h"
 
 #include <array>
+#include <memory>
 #include <utility>
 
 #include "livens/base/error.h"
@@ -41,6 +42,64 @@ void take_turns(const Body& body, int b, std::vector<StateQuantity>& all)
         all.push_back({body.name + ".angular_velocity_" + axes[k], "rad s-1", {}, 0, b, k});
 }
 
+using Bodies = std::span<const Matrix34>;
+
+double kinetic_of(const Body& body, const Matrix34& V) { return 0.5 * dot(V, V * body.mass); }
+
+/// The speed of the reference point, and energies: with weights where the world's origin is at zero.
+void take_energies(const Model& model, const std::string& name, int b, std::vector<StateQuantity>& all)
+{
+    const Body body = model.bodies()[b];
+    const auto at = static_cast<std::size_t>(b);
+    const Matrix34 weight = livens::weight(body, model.gravity());
+    const auto add = [&](const char* what, const char* unit, double mass, auto function) {
+        StateQuantity one{name + "." + what, unit};
+        one.function = std::move(function);
+        one.mass = mass;
+        all.push_back(std::move(one));
+    };
+    const auto kinetic = [=](Bodies, Bodies V) { return kinetic_of(body, V[at]); };
+    add("speed", "m s-1", 0, [=](Bodies, Bodies V) { return norm(V[at].column(0)); });
+    add("kinetic_energy", "J", body.mass(0, 0), kinetic);
+    add("energy", "J", body.mass(0, 0),
+        [=](Bodies X, Bodies V) { return kinetic_of(body, V[at]) - dot(weight, X[at]); });
+}
+
+/// That of all bodies, with what loads store. Throws where a load's depends on more than places.
+StateQuantity energy_of(const Model& model)
+{
+    struct All {
+        std::vector<Body> bodies;
+        std::vector<Matrix34> weights;
+        std::vector<Load> loads;
+    };
+    const auto of = std::make_shared<All>();
+    StateQuantity energy{"energy", "J"};
+    for (const Body& body : model.bodies()) {
+        of->bodies.push_back(body);
+        of->weights.push_back(weight(body, model.gravity()));
+        energy.mass += body.mass(0, 0);
+    }
+    for (const Load& load : model.loads()) {
+        if (!load.potential) continue;
+        if (!load.angles.empty())
+            throw InputError({"conditions-not-smooth", "energy",
+                              "'energy' cannot be stated at an end of time", "",
+                              "places, angles, speeds and their rates",
+                              "what load '" + load.name + "' stores depends on how often it has turned",
+                              "state the kinetic energy of bodies, or rates"});
+        of->loads.push_back(load);
+    }
+    energy.function = [of](Bodies X, Bodies V) {
+        double sum = 0;
+        for (std::size_t b = 0; b < X.size(); ++b)
+            sum += kinetic_of(of->bodies[b], V[b]) - dot(of->weights[b], X[b]);
+        for (const Load& load : of->loads) sum += load.potential(load_arguments(load, {0}, X, V));
+        return sum;
+    };
+    return energy;
+}
+
 /// All that has this name: joint, sensors, body.
 std::vector<StateQuantity> quantities_of(const Model& model, const std::string& object)
 {
@@ -54,6 +113,7 @@ std::vector<StateQuantity> quantities_of(const Model& model, const std::string& 
     if (const int b = model.find_body(object); b >= 0) {
         take(point_sensor(object, b, {}, stated_bodies(model)), all);
         if (!model.bodies()[b].is_point) take_turns(model.bodies()[b], b, all);
+        take_energies(model, object, b, all);
     }
     return all;
 }
@@ -86,6 +146,8 @@ std::string list_of(const std::vector<StateQuantity>& all)
 
 std::vector<StateQuantity> state_quantities(const Model& model, const std::string& name)
 {
+    if (name == "energy" && model.find_body(name) < 0 && model.find_joint(name) < 0)
+        return {energy_of(model)};
     const std::size_t dot = name.rfind('.');
     const std::string object = name.substr(0, dot == std::string::npos ? name.size() : dot),
                       component = dot == std::string::npos ? "" : name.substr(dot + 1);
@@ -107,7 +169,7 @@ std::vector<StateQuantity> state_quantities(const Model& model, const std::strin
                           "", "", "", "give the sensor, joint or body a name of its own"});
     if (const std::string why = not_smooth(model, object, component); !why.empty())
         throw InputError({"conditions-not-smooth", name, "'" + name + "' cannot be stated at an end of time",
-                          "", "places, angles and their rates", why,
+                          "", "places, angles, speeds and energies", why,
                           all.empty() ? "" : "there are " + list_of(all)});
     throw InputError(
         {"conditions-unknown", name, "there is no quantity '" + name + "'", "", "",
@@ -119,6 +181,7 @@ std::vector<StateQuantity> state_quantities(const Model& model, const std::strin
 double value_of(const StateQuantity& quantity, std::span<const Matrix34> stated, std::span<const Matrix34> X,
                 std::span<const Matrix34> V)
 {
+    if (quantity.function) return quantity.function(X, V);
     if (quantity.body >= 0) {
         const auto b = static_cast<std::size_t>(quantity.body);
         return angular_velocity(X[b], V[b])[quantity.axis];

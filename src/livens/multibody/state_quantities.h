@@ -2,6 +2,7 @@
 // Numbers of a state by name: what conditions at the ends of time are stated of.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,8 +21,12 @@ struct StateQuantity {
     int derivative = 0;             ///< by time, of the coordinate: 0 or 1
     int body = -1;                  ///< whose angular velocity it is, or -1
     int axis = 0;                   ///< of the world, likewise
+    /// Neither: a speed or an energy, which see X and V.
+    std::function<double(std::span<const Matrix34> X, std::span<const Matrix34> V)> function{};
+    double mass = 0;   ///< kg, of an energy; 0: a speed
 
-    bool is_rate() const { return derivative == 1 || body >= 0; }
+    bool is_energy() const { return mass > 0; }
+    bool is_rate() const { return derivative == 1 || body >= 0 || function; }
     bool is_angle() const { return body >= 0 || coordinate.coordinate.is_angle(); }
     bool counts_turns() const { return !is_rate() && coordinate.coordinate.counts_turns(); }
 };
@@ -29,8 +34,9 @@ struct StateQuantity {
 /// "object.component": the object is a joint, a sensor or a body. Joints have their coordinates and rates,
 /// sensors what they read of coordinates, bodies x, y, z of their reference point and vx, vy, vz;
 /// rotation_x, rotation_y, rotation_z, the rotation vector from where the model has the body;
-/// angular_velocity_x and so on, all in world axes. "position", "velocity", "rotation" and
-/// "angular_velocity" of a body are three at once. Throws InputError: `conditions-unknown`, and
+/// angular_velocity_x and so on, all in world axes; its speed, its kinetic energy and its energy with that of
+/// its weight. "energy" alone is that of all bodies with what loads store. "position", "velocity", "rotation"
+/// and "angular_velocity" of a body are three at once. Throws InputError: `conditions-unknown`, and
 /// `conditions-not-smooth` for what is no function of X and V.
 std::vector<StateQuantity> state_quantities(const Model& model, const std::string& name);
 

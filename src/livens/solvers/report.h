@@ -82,6 +82,8 @@ struct Conditioning {
     double guess_distance = 0;        ///< largest distance of the motion from the march it was guessed by: of
                                       ///< points by the model's length, of directors; 0: not guessed so
     double guess_distance_time = 0;   ///< when it first exceeds 0.05, else when it is largest, s
+    double arrival = 0;   ///< between both ends, s: by how many m a rate that is off by 1 m/s at the start
+                          ///< moves the motion at its end, at most; 0: not asked
 
     Conditioning& operator+=(const Conditioning& next)
     {

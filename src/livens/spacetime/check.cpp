@@ -128,6 +128,20 @@ void check_accuracy(const Conditions& given, const Span& span, const Method& met
     make_time_mesh(span.start, span.end, 1, span.output);   // throws
 }
 
+/// Speeds and kinetic energies have their least value where all rates are zero, which is more than one
+/// condition.
+void refuse_no_speed(const Condition& one)
+{
+    const std::string& name = one.quantity.name;
+    if (!(name.ends_with(".speed") || name.ends_with(".kinetic_energy")) || !one.quantity.function) return;
+    if (one.value > 0 || one.at == Condition::At::both) return;
+    throw InputError({"conditions-value",
+                      std::string(one.at == Condition::At::end ? "end" : "start") + ".known[" + name + "]",
+                      "'" + name + "' has to be positive", to_text(one.value, 6), "> 0",
+                      "at rest it says that all rates are zero, which is more than one condition",
+                      "give rates or velocities instead"});
+}
+
 /// Conditions by component take all of time at once.
 void check_components(const Model& model, const Problem& problem, const Time& time, const Method& method,
                       const SolveOptions& options)
@@ -135,21 +149,28 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
     const Conditions& given = problem.conditions;
     check_state(model, given.start, "start");
     if (!given.end.X.empty()) check_state(model, given.end, "end");
-    if (given.at_start != Known::nothing || given.at_end != Known::nothing)
-        throw InputError({"boundary-conditions", "start.known",
-                          "conditions by component stand beside what is given for all bodies", "",
-                          "one of the two", "",
-                          "leave start.given and end.given away, and state what they knew by component"});
+    for (const Condition::At at : {Condition::At::start, Condition::At::end}) {
+        const std::string end = at == Condition::At::start ? "start" : "end";
+        const Known known = at == Condition::At::start ? given.at_start : given.at_end;
+        if (known != Known::nothing && std::ranges::count(given.components, at, &Condition::at) > 0)
+            throw InputError({"boundary-conditions", end + ".known",
+                              "conditions by component stand beside what is given for all bodies at this end",
+                              "", "one of the two", "",
+                              "leave " + end + ".given away, or " + end + ".known"});
+        if (known == Known::momenta)
+            throw InputError({"boundary-conditions", end + ".given",
+                              "momenta of all bodies stand beside conditions by component", "momenta",
+                              "positions, state or nothing",
+                              "of six momenta a body joints leave only as many to choose as bodies are free, "
+                              "which depends on places that are not known",
+                              "give rates by component in " + end + ".known"});
+    }
     const auto refuse = [](const char* path, const std::string& what, const std::string& why,
                            const std::string& help) {
         throw InputError(
             {"conditions-method", path, what + " cannot take conditions by component", "", "", why, help});
     };
-    if (std::holds_alternative<Span>(time))
-        refuse("time.accuracy", "a motion to an accuracy",
-               "elements are found while marching from a state at the start",
-               "give elements instead of the accuracy");
-    if (!std::holds_alternative<Lobatto>(method))
+    if (!std::holds_alternative<Lobatto>(method) && !std::holds_alternative<AutomaticFamily>(method))
         refuse("method.family", "the method " + name_of(method),
                "momenta at both ends are unknowns of lobatto alone", "use lobatto");
     if (model.has_events())
@@ -160,6 +181,7 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
             throw InputError({"not-finite", "start.known[" + one.quantity.name + "]",
                               "the value of '" + one.quantity.name + "' is no number", to_text(one.value),
                               "a finite number", "", ""});
+    for (const Condition& one : given.components) refuse_no_speed(one);
     close_ends(model, problem, start_of(time), end_of(time), options.initial);   // throws
 }
 
@@ -235,7 +257,7 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
     refuse_rotors(model, problem.conditions, method);
     refuse_special_rows(model, method);
     check_unknowns(problem);
-    if (problem.conditions.components.empty())
+    if (!problem.conditions.has_components())
         check_conditions(model, problem.conditions, method);
     else
         check_components(model, problem, time, method, options);
@@ -252,6 +274,11 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
         throw InputError({"max-iterations-out-of-range", "method.max_iterations",
                           "at least one iteration is needed", std::to_string(options.max_iterations), ">= 1",
                           "", ""});
+    if (options.roots < 1 || (options.roots > 1 && problem.conditions.has_state()))
+        throw InputError(
+            {"roots-unused", "method.roots", "several motions are looked for between both ends of time",
+             std::to_string(options.roots), "1", options.roots < 1 ? "" : "a state at one end has one motion",
+             "leave roots out, or give conditions at both ends"});
     if (options.estimate == SolveOptions::Estimate::local && mesh != nullptr &&
         (!is_nodal(method) || problem.conditions.at_start != Known::state))
         throw InputError({"estimate-method", "method.estimate",

@@ -27,6 +27,9 @@ struct SolveOptions {
     /// Condition numbers of the whole matrix, in the report: of the last block (mixed), of all elements
     /// together, reduced to the free motions (lobatto).
     bool condition = false;
+    /// Motions that are looked for between both ends of time: other guesses may lead to others. How many
+    /// there are nobody knows.
+    int roots = 1;
     /// Elements of lobatto that fail, or meet a root of their equations that is none, are divided into two
     /// (from a state).
     bool divide = true;

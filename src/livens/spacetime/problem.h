@@ -44,20 +44,32 @@ struct Condition {
     StateQuantity quantity;
     double value = 0;
     At at = At::start;
+    bool forgets_turns = false;   ///< alike at both ends but for whole turns
 };
 
 /// Conditions at the ends of time, for all bodies alike. Two halves must be known: the state at one end, or
 /// positions or momenta at each. Stated values that are not known serve as a guess: V where positions are
 /// known, X where momenta are (zeros mean none).
 ///
-/// Or component by component: then nothing is known at the ends but these, twice as many as the joints leave
-/// motions free, and both states are guesses; one without bodies is none.
+/// Or component by component: twice as many as the joints leave motions free, where positions that are known
+/// at an end without components are as many as that; states are else guesses, one without bodies is none.
 struct Conditions {
     State start;
     Known at_start = Known::state;
     State end{};
     Known at_end = Known::nothing;
     std::vector<Condition> components{};
+    /// The state at the end is that at the start, but for whole turns: as many quantities are alike at both
+    /// ends as the other components leave free.
+    bool is_periodic = false;
+
+    /// By component, or periodic: then the end states are guesses.
+    bool has_components() const { return is_periodic || !components.empty(); }
+    /// At one end of time; else the conditions are at both.
+    bool has_state() const
+    {
+        return !has_components() && (at_start == Known::state || at_end == Known::state);
+    }
 };
 
 /// A number in a model, in its conditions or in their times that is to be found with the motion.

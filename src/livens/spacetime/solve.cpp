@@ -20,6 +20,7 @@
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/accuracy/accuracy.h"
 #include "livens/spacetime/phases.h"
+#include "livens/spacetime/roots.h"
 #include "livens/spacetime/rotating.h"
 #include "livens/spacetime/solve_mesh.h"
 
@@ -64,7 +65,7 @@ Solution solve_phase(const Model& model, const Problem& problem, const Time& tim
     const auto* mesh = std::get_if<TimeMesh>(&time);
     // Elements that are not stated are found for the accuracy: theory.md, "To an accuracy".
     if (mesh == nullptr) {
-        const bool is_march = problem.conditions.at_start == Known::state;
+        const bool is_march = problem.conditions.has_state();
         return is_march
                    ? solve_to_accuracy(model, problem, *tried.ends, std::get<Span>(time), method, options)
                    : solve_between_ends(model, problem, *tried.ends, std::get<Span>(time), method, options);
@@ -162,6 +163,12 @@ Solution solve(const Model& model, const Problem& stated, const Time& time, cons
     }
     // A start that does not close is an error of the input; inside of searches it is a result among others.
     if (solution.cannot_begin) throw InputError(std::move(*solution.cannot_begin));
+    if (options.roots > 1 && !problem.conditions.has_state())
+        solution = with_roots(model, problem, time, method, options, std::move(solution));
+    const bool is_iterate = solution.report.n_elements == 0 && solution.motion.n_elements() > 0;
+    if (is_iterate && !solution.report.converged())
+        solution.report.message +=
+            "; the last iterate is kept, which does not meet the equations but may serve as a guess";
     if (!options.judge || solution.motion.mesh.ends.empty()) return solution;
     // The estimate comes first: whether rounding spoils the accuracy, and what is suspect, follow from it.
     const Model& found = solved(model, solution);
@@ -175,6 +182,10 @@ Solution solve(const Model& model, const Problem& stated, const Time& time, cons
             return options.progress({n, n, solution.motion.end(), 0, solution.report.residual_norm});
         };
     judge(found, judged, options, solution, goes_on);
+    for (Solution& root : solution.roots) {
+        estimate(solved(model, root), with_found(problem, root), method, options, root);
+        judge(solved(model, root), with_found(problem, root), options, root, goes_on);
+    }
     return solution;
 }
 

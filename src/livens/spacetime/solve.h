@@ -43,6 +43,9 @@ struct Solution {
     /// no value; solve() throws it.
     std::optional<Complaint> cannot_begin{};
     FoundNumbers numbers{};
+    /// Where several motions were asked for: the others that were found, by their effort.
+    std::vector<Solution> roots{};
+    double effort = 0;   ///< J s: the kinetic energy over all of time, by which several motions are ordered
     /// Of a model with inertias along coordinates the same with their points, see WithRotors: what estimate()
     /// goes on from. Null: it has none.
     std::shared_ptr<Solution> with_rotors{};

@@ -189,6 +189,7 @@ WindowOptions options_of_mesh(const Model& model, const Ends& ends, const Method
     if (!w.has_state) {
         w.length = 0;
         w.may_split = false;
+        w.keeps_iterate = is_nodal(method);
         w.advice = "a shorter time, more elements, ends that are nearer, or a better guess (rates given "
                    "beside the known positions)";
     }

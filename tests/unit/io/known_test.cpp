@@ -113,6 +113,8 @@ TEST(KnownComponents, HaveOneMessageForAMistakeAtItsPlace)
         {"\"tip.vz\" = 1.5", "\"ball.vx\" = 1.5", "conditions-twice"},
         {"\"ball.velocity\" = [", "\"ball.velocity\" = [0, ", "wrong-type"},
         {"\"tip.vz\" = 1.5\n", "\"tip.vz\" = 1.5\n\"rod.vx\" = 1\n\"rod.x\" = 0.4\n", "conditions-dependent"},
+        {"\"tip.vz\" = 1.5", "\"rod.speed\" = 0", "conditions-value"},
+        {"\"tip.vz\" = 1.5", "\"rod.energy\" = \"3 N\"", "unit"},
         {"[0, \"180 deg/s\", 0]\n", "[0, 0, 0]\n\"pivot.angle\" = 1\n", "conditions-too-many"},
     };
     for (const auto& [from, to, code] : mistakes) {
@@ -133,12 +135,85 @@ TEST(KnownComponents, HaveOneMessageForAMistakeAtItsPlace)
     EXPECT_EQ(result.diagnostics[0].line, line_of(few, few.find("[start.known]"))) << shown(result);
 }
 
-TEST(KnownComponents, StandAlone)
+TEST(KnownComponents, StandBesideWhatIsGivenAtTheOtherEnd)
 {
-    const ScenarioResult result =
-        read(with("\n[start]\ngiven = \"positions\"\n\n[end.known]\n\"pivot.angle\" = \"swing\"\n"));
-    ASSERT_EQ(result.diagnostics.size(), 1u) << shown(result);
-    EXPECT_EQ(result.diagnostics[0].code, "boundary-conditions");
+    const std::string given = "\n[start]\ngiven = \"positions\"\n",
+                      at_end = all.substr(all.find("[end.known]"));
+    const ScenarioResult result = read(with(given + at_end));
+    ASSERT_TRUE(result.scenario.has_value()) << shown(result);
+    const Scenario& scenario = *result.scenario;
+    EXPECT_EQ(scenario.conditions.at_start, Known::positions);
+    const Solution s = solve(scenario.model, {scenario.conditions}, scenario.time, scenario.method);
+    ASSERT_TRUE(s.report.converged()) << s.report.message;
+    EXPECT_EQ(s.motion.at_end(0).X[0](0, 0), 0.5);
+    EXPECT_NEAR(s.motion.at_end(12).V[1](0, 0), 1, 1e-12);
+    // at one end it is one or the other
+    for (const std::string& wrong : {given + "\n[start.known]\n\"pivot.angle\" = 0\n\n" + at_end,
+                                     "\n[start]\ngiven = \"momenta\"\n\n" + at_end}) {
+        const ScenarioResult refused = read(with(wrong));
+        EXPECT_FALSE(refused.scenario.has_value());
+        EXPECT_NE(find(refused, "boundary-conditions"), nullptr) << shown(refused);
+    }
+}
+
+TEST(KnownComponents, AreSpeedsAndEnergies)
+{
+    std::string text = with(all);
+    text.replace(text.find("\"tip.vz\" = 1.5"), 14, "\"rod.kinetic_energy\" = \"300 mJ\"");
+    const ScenarioResult result = read(text);
+    ASSERT_TRUE(result.scenario.has_value()) << shown(result);
+    const Scenario& scenario = *result.scenario;
+    Problem problem{scenario.conditions};
+    problem.conditions.start.V[0] = rate(problem.conditions.start.X[0], {0, 0, -0.5}, {0, 1, 0});
+    const Solution s = solve(scenario.model, problem, scenario.time, scenario.method);
+    ASSERT_TRUE(s.report.converged()) << s.report.message;
+    const Matrix34 V = s.motion.at_end(12).V[0];
+    EXPECT_NEAR(0.5 * dot(V, V * scenario.model.bodies()[0].mass), 0.3, 1e-12);
+}
+
+const std::string driven = R"(
+[[load]]
+name = "motor"
+type = "actuator"
+joint = "pivot"
+inputs = { w = "pivot.angle_rate" }
+expression = "2*sin(2*pi*t) - 2*w"
+)";
+
+/// A rod alone, with what stands in [time] more.
+std::string periodic(const std::string& time, const std::string& rest)
+{
+    std::string text(links);
+    const std::size_t at = text.find("[[body]]\nname = \"ball\"");
+    text.erase(at, text.find("[[joint]]") - at);
+    const std::size_t parameters = text.find("[parameters]");
+    text.erase(parameters, text.find("[time]") - parameters);
+    text.replace(text.find("elements = 12"), 13, "elements = 24\n" + time);
+    return text + rest;
+}
+
+TEST(KnownComponents, AreThoseOfPeriodicMotions)
+{
+    const ScenarioResult result = read(periodic("periodic = true", driven));
+    ASSERT_TRUE(result.scenario.has_value()) << shown(result);
+    const Scenario& scenario = *result.scenario;
+    EXPECT_TRUE(scenario.conditions.is_periodic);
+    EXPECT_NE(scenario.resolved.find("\"periodic\""), std::string::npos);
+    const Solution s = solve(scenario.model, {scenario.conditions}, scenario.time, scenario.method);
+    ASSERT_TRUE(s.report.converged()) << s.report.message;
+    EXPECT_NEAR(s.motion.at_end(0).X[0](2, 0), s.motion.at_end(24).X[0](2, 0), 1e-12);
+    EXPECT_FALSE(read(periodic("periodic = false", driven)).scenario->conditions.is_periodic);
+    const auto code = [](const std::string& text) {
+        const ScenarioResult refused = read(text);
+        return refused.diagnostics.size() == 1 ? refused.diagnostics[0].code : shown(refused);
+    };
+    EXPECT_EQ(code(periodic("periodic = true", "")), "periodic-free");
+    EXPECT_EQ(code(periodic("periodic = true", driven + "\n[start.known]\n\"pivot.angle\" = 0\n")),
+              "conditions-too-many");
+    EXPECT_EQ(code(periodic("periodic = true", driven + "\n[method]\nfamily = \"radau\"\n")),
+              "conditions-method");
+    EXPECT_EQ(code(periodic("periodic = 3", driven)), "wrong-type");
+    EXPECT_EQ(code(periodic("", driven + "\n[method]\nroots = 3\n")), "roots-unused");
 }
 
 }   // namespace

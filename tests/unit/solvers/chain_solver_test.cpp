@@ -224,6 +224,44 @@ TEST(ChainSolver, AgreesWithTheWholeMatrixForAllSizesAndBorders)
                 }
 }
 
+/// Every sparse library of the build has as good a solution of the same matrix, and the same one.
+TEST(ChainSolver, IsAsGoodAsSparseFactors)
+{
+    int n_backends = 0;
+    for (const SparseBackend backend : {SparseBackend::eigen, SparseBackend::umfpack}) {
+        if (!has_backend(backend)) continue;
+        ++n_backends;
+        for (const int f : {1, 3, 12})
+            for (const int border : {0, 5}) {
+                const BlockStructure s = bordered(uniform(20, 3, f), border, 2 * f);
+                BlockMatrix matrix;
+                matrix.resize(s);
+                fill(s, 9, matrix);
+                BlockMatrix same = matrix;
+                const SparseMatrix A = to_sparse(s, matrix);
+                const auto chain = chain_solver(), whole = whole_solver(backend);
+                const Values b = Random(3).values(A.size);
+                Values x = b, y = b;
+                chain->analyse(s);
+                whole->analyse(s);
+                ASSERT_EQ(chain->factorise(matrix), Outcome::regular);
+                ASSERT_EQ(whole->factorise(same), Outcome::regular);
+                chain->solve(x);
+                whole->solve(y);
+                const auto* name = words_of(backend)[static_cast<std::size_t>(backend)].data();
+                EXPECT_LT(backward_error(A, x, b), 1e-14) << name << ' ' << f << ' ' << border;
+                EXPECT_LT(backward_error(A, y, b), 1e-14) << name << ' ' << f << ' ' << border;
+                double off = 0, size = 0;
+                for (std::size_t i = 0; i < x.size(); ++i) {
+                    off = std::max(off, std::abs(x[i] - y[i]));
+                    size = std::max(size, std::abs(x[i]));
+                }
+                EXPECT_LT(off, 1e-9 * size) << name << ' ' << f << ' ' << border;
+            }
+    }
+    EXPECT_GE(n_backends, 1);
+}
+
 TEST(ChainSolver, HoldsPeriodicMotionsThatGrow)
 {
     // x at the next node = M x with both growing and decaying parts, and x the same at both ends: nothing is

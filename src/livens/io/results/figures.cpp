@@ -52,6 +52,10 @@ constexpr Figure figures[] = {
      &SolveReport::guess_distance},
     {"guess_distance_time", "s", "time at which it first exceeds 0.05, else at which it is largest",
      &SolveReport::guess_distance_time},
+    {"arrival", "s",
+     "between both ends: by how many m a rate that is off by 1 m/s at the start moves the motion at its end, "
+     "at most (rad times the model length likewise); 0: not known",
+     &SolveReport::arrival, true, 5},
     {"max_constraint_violation", "1",
      "largest constraint error at nodes, each row relative to its scale; rigidity included",
      &Verdict::max_constraint_violation},

@@ -42,6 +42,10 @@ std::vector<double> stops_of(const Model& model, const Span& span);
 Solution solve_between_ends(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
                             const Method& method, const SolveOptions& options);
 
+/// Of a motion between both ends what its arrival is to its start, in the report. It may be stopped.
+void find_arrival(const Model& model, const Problem& problem, const SolveOptions& options,
+                  Solution& solution);
+
 /// The same by lobatto or radau; a note says why radau was taken, and of which body, spring or joint.
 Solution solve_to_accuracy(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
                            const AutomaticFamily& automatic, const SolveOptions& options);

@@ -240,7 +240,7 @@ void measure_error(const Model& model, const Problem& problem, const Method& met
 {
     const int n = solution.motion.n_elements();
     const Conditions& given = problem.conditions;
-    const bool is_march = given.at_end == Known::state || given.at_start == Known::state;
+    const bool is_march = given.has_state();
     const int piece = is_march ? std::min(n, elements_at_once) : n;
     ReferenceSolution second(model, problem, method, options, solution.motion);
     for (int done = piece;; done = std::min(done + piece, n)) {
@@ -362,6 +362,7 @@ void estimate(const Model& model, const Problem& stated, const Method& method, c
         solution.estimate = {};
         report.estimate_failed = "memory ended" + before;
     }
+    if (!problem.conditions.has_state()) find_arrival(model, problem, options, solution);
 }
 
 }   // namespace livens

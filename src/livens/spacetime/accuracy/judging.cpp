@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What solve() does last: the verdict, and what beside it only the engine knows.
+#include <algorithm>
 #include <functional>
 #include <new>
 #include <numbers>
@@ -14,7 +15,9 @@
 #include "livens/spacetime/accuracy/load_limits.h"
 #include "livens/spacetime/accuracy/turning_springs.h"
 #include "livens/spacetime/march/ends.h"
+#include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/solve.h"
+#include "livens/spacetime/solve_mesh.h"
 #include "livens/statics/frequencies.h"
 
 namespace livens {
@@ -32,6 +35,41 @@ std::vector<std::string> missed_conditions(const Model& model, const Problem& pr
     };
     const Ends ends = model.has_events() ? closed(acting_at(model, start).model) : closed(model);
     return unmet(model, ends, solution.motion, solution.estimate);
+}
+
+/// A motion that ends as it began goes on as it did, unless what drives it has another period.
+std::string another_period(const Model& model, const Problem& problem, const SolveOptions& options,
+                           const Solution& solution)
+{
+    constexpr double same = 1e-6, rounding = 1e-12;
+    const Motion& motion = solution.motion;
+    const bool is_whole = solution.report.converged() && motion.n_elements() > 0;
+    if (!problem.conditions.is_periodic || !is_whole) return "";
+    const double period = motion.end() - motion.start();
+    Problem next{{motion.at_end(motion.n_elements())}};
+    TimeMesh mesh = motion.mesh;
+    mesh.required = mesh.bends = {};
+    for (double& t : mesh.ends) t += period;
+    SolveOptions again = options;
+    again.condition = again.judge = false;
+    again.roots = 1;
+    again.initial = StartPolicy::project;
+    const Solution second = solve_unjudged(model, next, mesh, Lobatto{motion.X.degree}, again);
+    double off = 0, at = period;
+    for (int e = 0; second.report.converged() && e <= motion.n_elements(); ++e) {
+        const double t = motion.mesh.ends[e];
+        const double here =
+            distance_between(motion.at_end(e).X, second.motion.at(t + period).X, model.length());
+        if (!(here > off)) continue;
+        off = here;
+        at = t;
+    }
+    const double allowed = std::max(same, rounding * solution.report.arrival / period);
+    if (second.report.converged() && off <= allowed) return "";
+    return "the motion comes back after " + to_text(period, 6) +
+           " s and does not repeat itself: one period later it is elsewhere by " + to_text(off, 3) +
+           " (in model lengths or rad) near t = " + to_text(at + period, 4) +
+           " s, since what drives it has another period; try: a multiple of that period";
 }
 
 /// Energy that nobody supplied has a reason that no other check knows. Where an accuracy was asked for and is
@@ -77,6 +115,8 @@ void judge_beside(const Model& model, const Problem& problem, const SolveOptions
 {
     for (const std::string& reason : missed_conditions(model, problem, options, solution))
         solution.verdict.reasons.push_back(reason);
+    if (std::string why = another_period(model, problem, options, solution); !why.empty())
+        solution.verdict.reasons.push_back(std::move(why));
     constexpr double degree = std::numbers::pi / 180;
     const bool is_solved = solution.report.converged();
     std::string limit = turned_too_far(model, solution.motion, 175 * degree);

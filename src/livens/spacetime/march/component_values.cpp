@@ -31,11 +31,16 @@ std::vector<const StateQuantity*> quantities_of(const std::vector<Condition>& co
     return all;
 }
 
+double unit_of(const StateQuantity& quantity, double length, double duration)
+{
+    if (quantity.is_energy()) return quantity.mass * (length / duration) * (length / duration);
+    const double unit = quantity.is_angle() ? 1 : length;
+    return quantity.is_rate() ? unit / duration : unit;
+}
+
 double scale_of(const Condition& condition, double length, double duration)
 {
-    double unit = condition.quantity.is_angle() ? 1 : length;
-    if (condition.quantity.is_rate()) unit /= duration;
-    return std::max(std::abs(condition.value), unit);
+    return std::max(std::abs(condition.value), unit_of(condition.quantity, length, duration));
 }
 
 double start_of_turns(const Ends& ends, const StateQuantity& quantity)
@@ -62,9 +67,11 @@ std::vector<double> values_in(const Model& model, const Ends& ends,
             last = first = turned_to(first, start_of_turns(ends, q));
             for (const State& state : states) last = turned_to(raw(state), last);
         }
+        double change = last - first;
+        if (one.forgets_turns && q.counts_turns()) change = turned_to(change, 0);
         values.push_back(one.at == Condition::At::start ? first
                          : one.at == Condition::At::end ? last
-                                                        : last - first);
+                                                        : change);
     }
     return values;
 }

@@ -10,6 +10,7 @@
 
 #include "livens/base/text.h"
 #include "livens/solvers/dense.h"
+#include "livens/solvers/factors.h"
 #include "livens/spacetime/march/end_point.h"
 #include "livens/spacetime/march/numbered.h"
 
@@ -51,12 +52,6 @@ void place_about(const EndPoint& from, const ModelTables& tables, double rate, S
         for (double& value : y) value *= 0.5;
 }
 
-double unit_of(const Condition& condition, double length, double duration)
-{
-    const double unit = condition.quantity.is_angle() ? 1 : length;
-    return condition.quantity.is_rate() ? unit / duration : unit;
-}
-
 /// Derivatives of conditions by lengths, radians and rates times the duration along free motions at both
 /// ends, one row each, by their scales: numbers about 1, zero where joints hold a quantity. Columns by
 /// unknown numbers follow, of the first conditions.
@@ -75,7 +70,7 @@ DenseMatrix rows_at(const ModelTables& tables, const std::vector<Condition>& con
         for (int i = 0; i < m; ++i) {
             const Condition& one = conditions[i];
             if (one.at == (end == 0 ? Condition::At::end : Condition::At::start)) continue;
-            const double unit = unit_of(one, tables.length, duration);
+            const double unit = unit_of(one.quantity, tables.length, duration);
             for (int j = 0; j < f; ++j) {
                 const double size = point.size_along(point.basis(), point.maps(), j) * unit;
                 rows(i, end * 2 * f + j) = D(i, j) / size;
@@ -124,6 +119,7 @@ std::vector<Remainder> remainders(const DenseMatrix& rows)
 
 std::string path_of(const Condition& condition)
 {
+    if (condition.forgets_turns) return "time.periodic";
     return std::string(condition.at == Condition::At::end ? "end" : "start") + ".known[" +
            condition.quantity.name + "]";
 }
@@ -154,6 +150,48 @@ public:
         if (n > needed) return too_many(needed, n);
         if (n < needed) return too_few(needed, n);
         return {};
+    }
+
+    /// Quantities that are alike at both ends if the states are.
+    std::vector<Condition> alike() const
+    {
+        std::vector<Condition> all;
+        for (const StateQuantity& q : candidates()) all.push_back({q, 0, Condition::At::both, true});
+        return clearest(all, 2 * tables_.freedoms());
+    }
+
+    /// Places at an end, or places and rates, as quantities that tell them.
+    std::vector<Condition> of_state(Condition::At at, bool has_rates) const
+    {
+        const EndPoint& point = at == Condition::At::end ? end_ : start_;
+        std::vector<Condition> all;
+        for (const StateQuantity& q : candidates())
+            if (are_placed_ && (has_rates || !q.is_rate()) && point.is_known(q))
+                all.push_back({q, point.value(q), at});
+        return clearest(all, (has_rates ? 2 : 1) * tables_.freedoms());
+    }
+
+    /// Where forces are the same at all times and nothing drives the joints any motion may begin later.
+    bool is_driven() const
+    {
+        constexpr int n_instants = 16;
+        if (tables_.model->has_drives()) return true;
+        for (const EndPoint& point : starts_) {
+            const State state = point.state();
+            std::vector<double> X, V;
+            for (const Matrix34& x : state.X) X.insert(X.end(), std::begin(x.a), std::end(x.a));
+            for (const Matrix34& v : state.V) V.insert(V.end(), std::begin(v.a), std::end(v.a));
+            std::vector<double> first;
+            for (int i = 0; i < n_instants; ++i) {   // at shares of the time that no period divides
+                const double share = std::fmod(0.0137 + i * 0.6180339887498949, 1.0);
+                std::vector<double> F(X.size(), 0.0);
+                tables_.loads.add({ends_.start.t + share * duration_}, X.data(), V.data(), 1, F.data(),
+                                  tables_.loads.turns.begin());
+                if (first.empty()) first = F;
+                if (F != first) return true;
+            }
+        }
+        return false;
     }
 
 private:
@@ -206,9 +244,24 @@ private:
                         value = turned_to(value, at.value(ends_.components[i].quantity));
                     const double stated = one.at == Condition::At::both ? 0 : one.value;
                     by_numbers_[place](static_cast<int>(i), j) +=
-                        sign * weight * (value - stated) / unit_of(one, tables_.length, duration_);
+                        sign * weight * (value - stated) / unit_of(one.quantity, tables_.length, duration_);
                 }
             }
+    }
+
+    /// The n of them that tell the states at these very places best.
+    std::vector<Condition> clearest(const std::vector<Condition>& all, int n) const
+    {
+        if (!are_placed_ || all.empty()) return {};
+        DenseMatrix rows = rows_at(tables_, all, {&start_, &end_}, duration_);
+        for (double& one : rows.a)
+            if (!std::isfinite(one)) one = 0;
+        const PivotedQR factors(transpose(rows));
+        std::vector<Condition> chosen;
+        for (int k = 0; k < std::min(n, factors.n_pivots()); ++k)
+            if (factors.pivot(k) > 1e-6 * factors.pivot(0))
+                chosen.push_back(all[static_cast<std::size_t>(factors.column(k))]);
+        return chosen;
     }
 
     static bool is_dependent(const Remainder& row)
@@ -282,6 +335,15 @@ private:
 
     Complaint too_many(int needed, int n) const
     {
+        if (ends_.components.back().forgets_turns)
+            return {"conditions-too-many",
+                    "time.periodic",
+                    "a periodic motion with a given period takes no other conditions",
+                    std::to_string(n),
+                    std::to_string(needed),
+                    "that places and rates are alike at both ends are " + std::to_string(needed) +
+                        " conditions",
+                    "leave out what is known at the start and at the end, or periodic"};
         return {"conditions-too-many",
                 path_of(ends_.components.back()),
                 "too many conditions at the ends of time",
@@ -351,6 +413,37 @@ private:
 };
 
 }   // namespace
+
+std::optional<Complaint> make_periodic(const ModelTables& tables, Ends& ends)
+{
+    const Judgement judgement(tables, ends, {});
+    if (!judgement.is_driven())
+        return Complaint{
+            "periodic-free",
+            "time.periodic",
+            "a periodic motion is not determined by its period here",
+            "",
+            "",
+            "nothing depends on time: whatever moves periodically may begin at any instant of its "
+            "period, and of motions that keep their energy there is one of every size",
+            "let a load or a joint depend on time, or give conditions at the start and at the end"};
+    const std::vector<Condition> alike = judgement.alike();
+    ends.components.insert(ends.components.end(), alike.begin(), alike.end());
+    return {};
+}
+
+void make_given(const ModelTables& tables, Ends& ends)
+{
+    const Judgement judgement(tables, ends, {});
+    for (const Condition::At at : {Condition::At::start, Condition::At::end}) {
+        const Known known = at == Condition::At::start ? ends.at_start : ends.at_end;
+        if (known == Known::nothing) continue;
+        const std::vector<Condition> all = judgement.of_state(at, known == Known::state);
+        ends.components.insert(ends.components.end(), all.begin(), all.end());
+    }
+    ends.whole_at_start = std::exchange(ends.at_start, Known::nothing);
+    ends.whole_at_end = std::exchange(ends.at_end, Known::nothing);
+}
 
 std::optional<Complaint> why_undetermined(const ModelTables& tables, const Ends& ends,
                                           const UnknownNumbers& unknowns)

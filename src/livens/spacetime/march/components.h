@@ -21,8 +21,9 @@ std::string in_words(const Condition& condition);
 
 std::vector<const StateQuantity*> quantities_of(const std::vector<Condition>& conditions);
 
-/// What one unit of a condition is, for comparisons: its value, and at least a length of the model or a
-/// radian, for rates over the duration.
+/// A length of the model or a radian, for rates over the duration; of energies that of such a speed.
+double unit_of(const StateQuantity& quantity, double length, double duration);
+/// What one unit of a condition is, for comparisons: its value, and at least the unit of its quantity.
 double scale_of(const Condition& condition, double length, double duration);
 
 /// Where turns of an angle begin to be counted: at what is stated at the start, or at the stated bodies.
@@ -33,6 +34,11 @@ double start_of_turns(const Ends& ends, const StateQuantity& quantity);
 /// guesses, where no chance makes them dependent.
 std::optional<Complaint> why_undetermined(const ModelTables& tables, const Ends& ends,
                                           const UnknownNumbers& unknowns);
+
+/// Of an end at which places, or places and rates, are given: these as components beside the others.
+void make_given(const ModelTables& tables, Ends& ends);
+/// Adds what makes a motion periodic to its conditions; or why its period does not determine it.
+std::optional<Complaint> make_periodic(const ModelTables& tables, Ends& ends);
 
 /// A state near a guess that meets what is stated at an end, as far as it comes.
 State settled(const ModelTables& tables, const Ends& ends, Condition::At at, const State& guess);

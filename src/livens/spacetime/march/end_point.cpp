@@ -109,7 +109,7 @@ double EndPoint::value(const StateQuantity& quantity) const { return value_of(qu
 
 bool EndPoint::is_known(const StateQuantity& quantity) const
 {
-    return quantity.body >= 0 || livens::is_known(quantity.coordinate.coordinate, X_);
+    return quantity.function || quantity.body >= 0 || livens::is_known(quantity.coordinate.coordinate, X_);
 }
 
 State EndPoint::state() const { return {state_.t, X_, V_}; }

@@ -37,8 +37,11 @@ std::optional<Complaint> close_end(const Model& model, State& state, Known known
 
 /// Guesses at both ends, of which that at the start says which rows are independent; a guess at the end that
 /// no place near closes, or that nobody gave, is the one at the start.
-std::optional<Complaint> close_guesses(const Model& model, const UnknownNumbers& unknowns, Ends& ends)
+std::optional<Complaint> close_guesses(const Model& model, const Problem& problem, Ends& ends, StartPolicy policy)
 {
+    std::optional<Complaint> given = close_end(model, ends.end, ends.at_end, policy, nullptr, ends);
+    if (!given) given = close_end(model, ends.start, ends.at_start, policy, nullptr, ends);
+    if (given) return given;
     TriedStart start = try_consistent_start(model, ends.start, StartPolicy::project);
     if (!start.closed) return std::move(start.why);
     ends.start = std::move(start.closed->start);
@@ -51,7 +54,10 @@ std::optional<Complaint> close_guesses(const Model& model, const UnknownNumbers&
     TriedStart end = try_consistent_start(model, ends.end, StartPolicy::project);
     if (end.closed) ends.end = std::move(end.closed->start);
     const ModelTables tables(model, ends.independent);
-    if (std::optional<Complaint> why = why_undetermined(tables, ends, unknowns)) return why;
+    make_given(tables, ends);
+    if (problem.conditions.is_periodic)
+        if (std::optional<Complaint> why = make_periodic(tables, ends)) return why;
+    if (std::optional<Complaint> why = why_undetermined(tables, ends, problem.unknowns)) return why;
     ends.start = settled(tables, ends, Condition::At::start, ends.start);
     if (ends.is_end_guessed) ends.end = settled(tables, ends, Condition::At::end, ends.end);
     return {};
@@ -79,8 +85,8 @@ TriedEnds try_close_ends(const Model& model, const Problem& problem, double star
     ends.end.t = end;
     ends.components = conditions.components;
     ends.n_numbers = static_cast<int>(problem.unknowns.numbers.size());
-    if (ends.has_components()) {
-        if (std::optional<Complaint> why = close_guesses(model, problem.unknowns, ends))
+    if (conditions.has_components()) {
+        if (std::optional<Complaint> why = close_guesses(model, problem, ends, policy))
             return {{}, std::move(*why)};
         return {std::move(ends), {}};
     }

@@ -308,6 +308,10 @@ bool March::explain(const Elements& of, const NewtonReport& outcome)
     if (message.empty())
         message = of_failure(outcome, options_.solve.max_iterations, window_at(mesh_, of.first, of.last),
                              window_.worst(), options_.advice);
+    const bool is_finite =
+        outcome.status != SolveStatus::not_finite && outcome.status != SolveStatus::cancelled;
+    SolveReport ignored;
+    if (options_.keeps_iterate && is_finite) window_.close({}, ignored);
     return fail(outcome.status, message);
 }
 

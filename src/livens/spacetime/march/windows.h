@@ -18,6 +18,9 @@ struct WindowOptions : DivisionOptions {
     SolveOptions solve;           ///< the caller's; what is below stands above them
     bool ends_at_bends = false;   ///< elements end where laws of loads bend, if forwards and alone
     bool has_state = true;        ///< at one end of time
+    /// A window that fails leaves what its last iteration came to in the window's motion, to be looked at and
+    /// as a guess; nothing of it counts as solved.
+    bool keeps_iterate = false;
     double length_of_model = 1;   ///< m, what distances are relative to
     std::string advice{};         ///< what may help a window that failed; empty: what helps a march
     /// Guesses for the open window of elements first..last - 1, one attempt after the other from 0, where the

@@ -57,6 +57,7 @@ bool EndConditions::evaluate(const WindowLayout& layout, const Nodes& nodes)
         if (condition.at == Condition::At::both) {
             const double first = points_[0].value(q);
             found -= q.counts_turns() ? turned_to(first, start_of_turns(ends_, q)) : first;
+            if (condition.forgets_turns && q.counts_turns()) found = turned_to(found, 0);
         }
         missing_[i] = ends_.value(i) - found;
         largest_ = std::max(largest_, std::abs(missing_[i]) / scale(i));

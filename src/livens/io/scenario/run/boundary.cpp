@@ -171,12 +171,15 @@ void read_boundary(Builder& builder, Conditions& boundary)
 {
     const Section* const start = only_section(builder.run(), "start");
     const Section* const end = only_section(builder.run(), "end");
+    const Section* const time = only_section(builder.run(), "time");
+    boundary.is_periodic = time != nullptr && time->has("periodic") && time->truth("periodic");
+    if (time != nullptr) builder.remember("time.periodic", time->place("periodic"));
     boundary.at_start = start != nullptr ? start->pick<Known>("given") : Known::state;
     boundary.at_end = end != nullptr ? end->pick<Known>("given") : Known::nothing;
     if (start != nullptr) read_known(builder, *start, Condition::At::start, boundary);
     if (end != nullptr) read_known(builder, *end, Condition::At::end, boundary);
-    const bool has_components =
-        (start != nullptr && start->has("known")) || (end != nullptr && end->has("known"));
+    const bool has_components = boundary.is_periodic || (start != nullptr && start->has("known")) ||
+                                (end != nullptr && end->has("known"));
     // the state at the start is known unless something else is said to be
     if (has_components && (start == nullptr || !start->has("given"))) boundary.at_start = Known::nothing;
     if (boundary.at_end == Known::nothing) return;

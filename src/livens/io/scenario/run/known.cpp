@@ -17,9 +17,16 @@ void check_unit(const Node& node, const Section& table, const StateQuantity& qua
     if (node.kind != Node::Kind::text) return;
     const Amount amount = compute(node.text(), table.parameters()).amount;
     if (!amount.has_unit) return;
-    const double length = quantity.is_angle() ? 0 : 1, time = quantity.is_rate() ? -1 : 0;
-    const bool fits = amount.powers[0] == length && amount.powers[1] == 0 && amount.powers[2] == time &&
-                      (quantity.is_angle() || amount.powers[3] == 0) && !amount.has_hertz;
+    const bool is_energy = quantity.is_energy();
+    const double length = quantity.is_angle() ? 0
+                          : is_energy         ? 2
+                                              : 1,
+                 time = is_energy            ? -2
+                        : quantity.is_rate() ? -1
+                                             : 0;
+    const bool fits = amount.powers[0] == length && amount.powers[1] == (is_energy ? 1 : 0) &&
+                      amount.powers[2] == time && (quantity.is_angle() || amount.powers[3] == 0) &&
+                      !amount.has_hertz;
     if (!fits)
         throw InputError({"unit", "", "'" + quantity.name + "' is in " + quantity.unit, node.text(), "",
                           "it is given as " + described(amount), ""});
@@ -55,10 +62,13 @@ Key known_key(const std::string& where)
             "\"90 deg\"`. A quantity is a coordinate of a joint or its rate, what a sensor reads of "
             "places and velocities, or of a body `x`, `y`, `z`, `vx`, `vy`, `vz`, the rotation vector from "
             "where `[[body]]` places it (`rotation_x` ..) and `angular_velocity_x` .., all in world axes; "
-            "`position`, `velocity`, `rotation` and `angular_velocity` are three at once. At both ends "
+            "`position`, `velocity`, `rotation` and `angular_velocity` are three at once. A body has also "
+            "`speed`, `kinetic_energy` and `energy` (with that of its weight), and `energy` alone is that of "
+            "all "
+            "bodies with what loads store. At both ends "
             "together there must be twice as many as the joints leave motions free. The bodies as they are "
             "placed, and their velocities, are a first guess. Angles at the end count turns from the "
-            "start. For the family lobatto, with `elements`."};
+            "start. At an end without quantities `given` may say positions. For the family lobatto."};
 }
 
 void read_known(Builder& builder, const Section& table, Condition::At at, Conditions& boundary)

@@ -134,8 +134,7 @@ MemoryNeed memory_needed(const Scenario& scenario)
 {
     const Model& model = scenario.model;
     const Method& method = scenario.method;
-    const bool is_march =
-        scenario.conditions.at_start == Known::state || scenario.conditions.at_end == Known::state;
+    const bool is_march = scenario.conditions.has_state();
     const auto* mesh = std::get_if<TimeMesh>(&scenario.time);
     const double n_output = static_cast<double>(scenario.output.size());
     // for an accuracy at least one between output times is found

@@ -218,6 +218,13 @@ const std::vector<OptionKey>& option_keys()
              "evaluated. `false` treats all laws as smooth; it exists for comparison.",
              "", "true"},
          &SolveOptions::look_at_laws},
+        {Key{"roots", types::integer,
+             "How many motions are looked for between conditions at both ends, from guesses with other rates "
+             "and turns. Those that are found are ordered by their effort, the kinetic energy over all of "
+             "time; the least is the result. There may be more than are found.",
+             "", "1"}
+             .within({1, 32}),
+         &SolveOptions::roots},
         {Key{"condition", types::truth,
              "Whether condition numbers are computed: of the matrix of the last block (mixed), of all "
              "elements (lobatto) or of the last element (radau), the latter two reduced to the motions that "

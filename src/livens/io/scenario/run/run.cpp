@@ -53,7 +53,9 @@ std::string resolved_run(const Builder& builder, const Scenario& scenario)
         json.value(std::span<const double>(output->numbers));
     else
         json.value(output->numbers.front());
-    json.member("breaks", time.text("breaks")).end_object();
+    json.member("breaks", time.text("breaks"));
+    if (scenario.conditions.is_periodic) json.member("periodic", true);
+    json.end_object();
     json.key("method").begin_object();
     write_method(json, scenario.method);
     write_options(json, options);

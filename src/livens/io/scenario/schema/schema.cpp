@@ -39,7 +39,14 @@ Table time_table()
              "initial time, and for lobatto with conditions at both ends. Used by default if neither "
              "`elements` nor `knots` of `[method]` is given.",
              "", "1e-6"}
-             .within({0, 0.1, true})}};
+             .within({0, 0.1, true}),
+         Key{"periodic", types::truth,
+             "Whether the motion ends in the state in which it begins, but for whole turns: a periodic "
+             "motion, "
+             "of which `end` - `start` is the period, or some of them. The bodies as they are placed, and "
+             "their velocities, are a first guess. Something must depend on time, and have this period. For "
+             "the family lobatto.",
+             "", "false"}}};
 }
 
 }   // namespace
