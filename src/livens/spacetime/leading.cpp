@@ -55,7 +55,7 @@ public:
           rule_(lobatto_rule(degree)), from_start_(from_start), numbers_{problem.guesses(), {}}
     {}
 
-    Leading go(const Guess& begin)
+    Leading go(const Guess& begin, bool may_turn)
     {
         arrival_ = begin(from_start_ ? mesh_.end() : mesh_.start());
         if (ends_.has_components()) arrived_ = values_in(model_, ends_, begin, instants());
@@ -80,7 +80,7 @@ public:
         }
         if (led.share == 1)
             led.motion = last;
-        else if (problem_.size() == 0)
+        else if (may_turn && problem_.size() == 0)
             follow({last, led.share}, led);
         return led;
     }
@@ -102,6 +102,7 @@ private:
     {
         const Followed followed =
             follow_curve(model_, mesh_, rule_.degree, from, [this](double share) { return ends_at(share); });
+        led.has_followed = true;
         led.steps += followed.steps;
         led.turns = followed.turns;
         if (followed.motion) led.motion = solved(1, followed.motion);
@@ -178,9 +179,9 @@ private:
 
 }   // namespace
 
-Leading lead(const NumberedProblem& problem, int degree, const Guess& begin, bool from_start)
+Leading lead(const NumberedProblem& problem, int degree, const Guess& begin, bool from_start, bool may_turn)
 {
-    return Leader(problem, degree, from_start).go(begin);
+    return Leader(problem, degree, from_start).go(begin, may_turn);
 }
 
 }   // namespace livens::inline spacetime_internal

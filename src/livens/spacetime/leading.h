@@ -10,16 +10,18 @@ namespace livens::inline spacetime_internal {
 
 /// How a motion was led.
 struct Leading {
-    Guess motion{};     ///< that meets both ends; empty: it was not found
-    double share = 0;   ///< of the way that was gone
-    int steps = 0;      ///< solutions, with those that failed
-    int turns = 0;      ///< of a way that turned back
+    Guess motion{};              ///< that meets both ends; empty: it was not found
+    double share = 0;            ///< of the way that was gone
+    int steps = 0;               ///< solutions, with those that failed
+    bool has_followed = false;   ///< the curve, past where the way turned back
+    int turns = 0;               ///< of it
 };
 
 /// A motion of lobatto(degree) that meets what is known at both ends, from one that meets what is known at
 /// one: the other end goes from what that motion has there to what is stated, in steps that grow while they
 /// succeed and are halved where they fail, each begun with what two motions before foretell. `from_start`:
-/// the end of time is led, else its start.
-Leading lead(const NumberedProblem& problem, int degree, const Guess& begin, bool from_start);
+/// the end of time is led, else its start. `may_turn`: where it comes no farther the curve of motions is
+/// followed.
+Leading lead(const NumberedProblem& problem, int degree, const Guess& begin, bool from_start, bool may_turn);
 
 }   // namespace livens::inline spacetime_internal

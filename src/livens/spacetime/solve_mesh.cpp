@@ -34,6 +34,8 @@ namespace {
 /// Beyond, conditions at both ends do not determine the motion: the share of it that rounding may move. Where
 /// they leave a motion free it is about 1.
 constexpr double undetermined = 1e-4;
+/// Past folds: each may cost some hundred factorisations.
+constexpr int most_curves = 3;
 
 std::unique_ptr<Window> make_window(const ModelTables& tables, const TimeMesh& mesh, const Ends& ends,
                                     const Method& method, bool look_at_laws, const Motion* near)
@@ -115,7 +117,9 @@ private:
             const GuessFromEnds march = march_to_lead(model_, guessed_ends(), guess_mesh(), lead_);
             if (!march.motion) break;
             lead_ = march.next;
-            const Leading led = lead(numbered_, degree(), march.motion, march.from_start);
+            const Leading led =
+                lead(numbered_, degree(), march.motion, march.from_start, n_curves_ < most_curves);
+            n_curves_ += led.has_followed ? 1 : 0;
             if (!led.motion) continue;
             told_ = "found by an end that was led, in " + std::to_string(led.steps) +
                     " steps, from where a march from the " + (march.from_start ? "start " : "end ") +
@@ -149,7 +153,7 @@ private:
     std::optional<Ends> guessed_;   // of conditions by component
     std::vector<GuessFromEnds> plain_;
     std::optional<std::vector<GuessFromEnds>> nearest_;   // made where plain ones fail
-    int n_plain_ = 0, lead_ = 0;                          // guesses, and marches that were led, so far
+    int n_plain_ = 0, lead_ = 0, n_curves_ = 0;   // guesses, marches that were led, and curves, so far
     std::string told_;
 };
 

@@ -60,7 +60,7 @@ Led led(double duration, double factor)
     const UnknownNumbers none;
     const NumberedProblem numbered(model, ends, mesh, none);
     const Guess march = guess_from_state(model, ends.start, mesh.ends, degree).motion;
-    Led found{lead(numbered, degree, march, true)};
+    Led found{lead(numbered, degree, march, true, true)};
     if (!found.by_curve.motion) return found;
     const auto missed = [&](const State& state) {
         return distance_between(state.X, there.X, model.length());

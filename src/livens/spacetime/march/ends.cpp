@@ -37,7 +37,8 @@ std::optional<Complaint> close_end(const Model& model, State& state, Known known
 
 /// Guesses at both ends, of which that at the start says which rows are independent; a guess at the end that
 /// no place near closes, or that nobody gave, is the one at the start.
-std::optional<Complaint> close_guesses(const Model& model, const Problem& problem, Ends& ends, StartPolicy policy)
+std::optional<Complaint> close_guesses(const Model& model, const Problem& problem, Ends& ends,
+                                       StartPolicy policy)
 {
     std::optional<Complaint> given = close_end(model, ends.end, ends.at_end, policy, nullptr, ends);
     if (!given) given = close_end(model, ends.start, ends.at_start, policy, nullptr, ends);
