@@ -253,7 +253,7 @@ private:
     std::vector<Condition> clearest(const std::vector<Condition>& all, int n) const
     {
         if (!are_placed_ || all.empty()) return {};
-        DenseMatrix rows = rows_at(tables_, all, {&start_, &end_}, duration_);
+        DenseMatrix rows = rows_at(tables_, all, {&start_, &end_}, duration_, {});
         for (double& one : rows.a)
             if (!std::isfinite(one)) one = 0;
         const PivotedQR factors(transpose(rows));

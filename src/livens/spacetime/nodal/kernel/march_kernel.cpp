@@ -266,6 +266,7 @@ bool MarchKernel::solve(const WindowLayout& layout, const InstantState& start, c
         is_solved_ = iterates(kind);
         choice_.took(is_solved_ ? report.iterations : most_kernel_steps, is_solved_,
                      kind == Steps::by_tangent);
+        report.has_dear_factor = is_solved_ && kind == Steps::by_tangent && choice_.is_dear();
         return is_solved_;
     };
     const bool was_kept = choice_.is_kept(), was_slow = choice_.last_steps() > most_kernel_steps;

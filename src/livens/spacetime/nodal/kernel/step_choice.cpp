@@ -16,6 +16,7 @@ constexpr int always_allowed = 14;                 // of free bodies, which are 
 constexpr double usual_steps = 8;                  // of an element by slopes, before one was seen
 constexpr double usual_share = 0.25;               // of a factor that an element makes, likewise
 constexpr int first_trial = 8, last_trial = 512;   // elements until steps of free bodies are tried again
+constexpr double dear = 2;                         // elements
 constexpr double same_length = 0.03;   // of the motion of stiff loads a factor then leaves about twice that
 
 }   // namespace
@@ -41,6 +42,12 @@ void StepChoice::begin(const std::shared_ptr<const RowPattern>& pattern, const W
     pattern_ = pattern;
     const KernelTangent::Cost cost = tangent().cost();
     cost_by_tangent_ = usual_share * cost.factor + usual_steps * cost.step;
+}
+
+bool StepChoice::is_dear() const
+{
+    const KernelTangent::Cost cost = tangent_->cost();
+    return cost.factor > dear * last_steps_ * cost.step;
 }
 
 int StepChoice::most_free_steps() const

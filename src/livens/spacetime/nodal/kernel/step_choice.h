@@ -36,6 +36,8 @@ public:
     /// Made for the element at hand.
     int n_factors() const { return n_factors_; }
     int last_steps() const { return last_steps_; }
+    /// A factor costs more than the steps of some elements as the last one.
+    bool is_dear() const;
 
 private:
     std::unique_ptr<KernelTangent> tangent_;
