@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How far apart the ends of time may be: motions of seven mechanisms, from what is known of them at two instants.
 
-    benchmarks/both_ends.py build/release/livens [--guess 0.9] [--ends xx xp px] [--mechanism NAME ..] [--limit 300] [--jobs 2]
+    benchmarks/ends_apart.py build/release/livens [--guess 0.9] [--ends xx xp px] [--mechanism NAME ..] [--limit 300] [--jobs 2]
 
 Each motion is marched first, from 0.5 s on. Then places (x) or momenta (p) at its two ends are all that is known, over 0.25 to
 4 s, beside rates times `--guess` at the start and none at the end: lobatto(8), 20 elements a second. A motion counts if the
