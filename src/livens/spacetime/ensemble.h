@@ -34,4 +34,4 @@ void run_in_order(int n, int n_threads, const std::function<void(int)>& work,
 /// n_threads, or what 0 stands for.
 int threads_for(int n_threads);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

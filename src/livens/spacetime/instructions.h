@@ -23,4 +23,4 @@ Instructions instructions();
 /// False: they are not there, and nothing changes.
 bool use_instructions(Instructions set);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -145,4 +145,4 @@ TimeMesh mesh_of_knots(const Mixed& mixed);
 /// "lobatto(6)", "radau(4)", "mixed(bspline, 2, natural, equal)", "midpoint", "endpoint", "auto".
 std::string name_of(const Method& method);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

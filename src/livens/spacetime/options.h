@@ -20,7 +20,6 @@ struct SolveOptions {
     int max_iterations = 30;
     StartPolicy initial = StartPolicy::check;
     ProgressCallback progress;
-    int threads = 0;   ///< reserved
     /// What the motion may take in memory before a march to an accuracy is given up: it says beforehand only
     /// where it ends.
     double most_bytes = 8.0 * (1u << 30);

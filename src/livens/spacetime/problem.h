@@ -59,8 +59,8 @@ struct Conditions {
     State end{};
     Known at_end = Known::nothing;
     std::vector<Condition> components{};
-    /// The state at the end is that at the start, but for whole turns: as many quantities are alike at both
-    /// ends as the other components leave free.
+    /// The state at the end is that at the start, but for whole turns: twice as many quantities as the joints
+    /// leave motions free are alike at both ends, beside other components.
     bool is_periodic = false;
 
     /// By component, or periodic: then the end states are guesses.

@@ -72,17 +72,6 @@ std::vector<State> other_starts(const ModelTables& tables, const Ends& ends)
     return all;
 }
 
-/// The kinetic energy over all of time, J s, without which motions could not be compared whose duration is
-/// one.
-double effort_of(const Model& model, const Motion& motion)
-{
-    const ActionSeries of = action(model, motion);
-    double sum = 0;
-    for (std::size_t e = 0; e < of.lagrangian.size(); ++e)
-        sum += 0.5 * (of.lagrangian[e] + of.hamiltonian[e]);
-    return sum;
-}
-
 bool is_same(const Model& model, const Motion& one, const Motion& other, double errors)
 {
     double off = 0;
@@ -140,7 +129,6 @@ public:
         if (!is_motion(solution)) return;
         for (const Solution& one : found_)
             if (is_same(model_, one.motion, solution.motion, error_of(one) + error_of(solution))) return;
-        solution.effort = effort_of(model_, solution.motion);
         found_.push_back(std::move(solution));
     }
 
@@ -148,7 +136,8 @@ public:
     Solution result(const Solution& failed)
     {
         if (found_.empty()) return failed;
-        std::ranges::stable_sort(found_, {}, &Solution::effort);
+        std::ranges::stable_sort(found_, {},
+                                 [&](const Solution& one) { return effort_of(model_, one.motion); });
         Solution best = std::move(found_.front());
         found_.erase(found_.begin());
         best.roots = std::move(found_);
@@ -157,8 +146,8 @@ public:
             const std::string turns = turns_of(model_, one.motion);
             notes_.push_back("motion " + std::to_string(i + 1) + " of " +
                              std::to_string(best.roots.size() + 1) + " that were found: effort " +
-                             to_text(one.effort, 6) + " J s (kinetic energy over all of time)" +
-                             (turns.empty() ? "" : ", " + turns));
+                             to_text(effort_of(model_, one.motion), 6) +
+                             " J s (kinetic energy over all of time)" + (turns.empty() ? "" : ", " + turns));
         }
         if (static_cast<int>(best.roots.size()) + 1 < wanted_)
             notes_.push_back("no more were found of " + std::to_string(wanted_) +
@@ -206,3 +195,16 @@ Solution with_roots(const Model& model, const Problem& problem, const Time& time
 }
 
 }   // namespace livens::inline spacetime_internal
+
+namespace livens {
+
+double effort_of(const Model& model, const Motion& motion)
+{
+    const ActionSeries of = action(model, motion);
+    double sum = 0;
+    for (std::size_t e = 0; e < of.lagrangian.size(); ++e)
+        sum += 0.5 * (of.lagrangian[e] + of.hamiltonian[e]);
+    return sum;
+}
+
+}   // namespace livens

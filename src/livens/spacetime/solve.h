@@ -45,7 +45,6 @@ struct Solution {
     FoundNumbers numbers{};
     /// Where several motions were asked for: the others that were found, by their effort.
     std::vector<Solution> roots{};
-    double effort = 0;   ///< J s: the kinetic energy over all of time, by which several motions are ordered
     /// Of a model with inertias along coordinates the same with their points, see WithRotors: what estimate()
     /// goes on from. Null: it has none.
     std::shared_ptr<Solution> with_rotors{};
@@ -57,6 +56,9 @@ struct Solution {
 /// With an accuracy the motion comes with its estimate, or with the status `inaccurate`.
 Solution solve(const Model& model, const Problem& problem, const Time& time, const Method& method,
                const SolveOptions& options = {});
+
+/// By which several motions are ordered: the kinetic energy over all of time, J s.
+double effort_of(const Model& model, const Motion& motion);
 
 /// What solve() does before it judges, if asked to and if the iteration converged: a second solution, and how
 /// far it is from the first, where it fails the report says why; and growth(), if asked for. Nothing that
