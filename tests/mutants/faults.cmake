@@ -1524,8 +1524,8 @@ livens_mutant(NAME elements_between_ends_are_even
 # Two solutions that agree by chance are believed to any digit.
 livens_mutant(NAME rounding_between_ends_is_forgotten
               FILE spacetime/accuracy/between_ends.cpp
-              OLD [[{ return rounding_share * solution.moved_by_rounding; }]]
-              NEW [[{ return 0 * solution.moved_by_rounding; }]]
+              OLD [[{ return rounding_share * solution.report.moved_by_rounding; }]]
+              NEW [[{ return 0 * solution.report.moved_by_rounding; }]]
               TESTS_OF convergence
               MUST_FAIL AccuracyBetweenEnds.IsGivenUpWhereRoundingIsMore)
 

@@ -184,4 +184,14 @@ Leading lead(const NumberedProblem& problem, int degree, const Guess& begin, boo
     return Leader(problem, degree, from_start).go(begin, may_turn);
 }
 
+std::string in_words(const Leading& led, const GuessFromEnds& march)
+{
+    std::string words = "found by an end that was led, in " + std::to_string(led.steps) +
+                        " steps, from where a march from the " + (march.from_start ? "start " : "end ") +
+                        march.rates + " arrives";
+    if (led.turns > 0)
+        words += led.turns == 1 ? ", past a fold" : ", past " + std::to_string(led.turns) + " folds";
+    return words;
+}
+
 }   // namespace livens::inline spacetime_internal

@@ -2,6 +2,7 @@
 // Ends that are led from where a motion arrives to where it shall.
 #pragma once
 
+#include "livens/spacetime/guess.h"
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/nodal/unknowns_window.h"
 #include "livens/time/time_mesh.h"
@@ -23,5 +24,9 @@ struct Leading {
 /// the end of time is led, else its start. `may_turn`: where it comes no farther the curve of motions is
 /// followed.
 Leading lead(const NumberedProblem& problem, int degree, const Guess& begin, bool from_start, bool may_turn);
+
+/// "found by an end that was led, in 3 steps, from where a march from the start with the stated rates
+/// arrives".
+std::string in_words(const Leading& led, const GuessFromEnds& march);
 
 }   // namespace livens::inline spacetime_internal

@@ -36,9 +36,7 @@ struct Solution {
     Growing growing{};              ///< what of it grows most, up to the horizon or the end
     Growing rounding_in{};          ///< likewise of `rounding`
     std::vector<Unseen> unseen{};   ///< what laws of loads did inside of elements, see Unseen
-    /// Of conditions at both ends: how far the rounding of rows may move the motion, in lengths and rad.
-    double moved_by_rounding = 0;
-    double estimate_seconds = 0;   ///< that the second solution and the neighbouring motion took
+    double estimate_seconds = 0;    ///< that the second solution and the neighbouring motion took
     /// Why the motion has no beginning, where that is a matter of the motion before it, or an unknown number
     /// no value; solve() throws it.
     std::optional<Complaint> cannot_begin{};

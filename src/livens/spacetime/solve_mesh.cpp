@@ -59,12 +59,6 @@ std::vector<double> instants(const TimeMesh& mesh, const Ends& ends, int first, 
     return times;
 }
 
-std::string past_turns(int turns)
-{
-    if (turns == 0) return "";
-    return turns == 1 ? ", past a fold" : ", past " + std::to_string(turns) + " folds";
-}
-
 /// Where windows start from, one attempt after the other. From a state: a march of lobatto over the
 /// elements, or more and more pieces of them. Single elements of lobatto and radau have their own guess;
 /// where that leads nowhere they are too long, and are divided.
@@ -121,9 +115,7 @@ private:
                 lead(numbered_, degree(), march.motion, march.from_start, n_curves_ < most_curves);
             n_curves_ += led.has_followed ? 1 : 0;
             if (!led.motion) continue;
-            told_ = "found by an end that was led, in " + std::to_string(led.steps) +
-                    " steps, from where a march from the " + (march.from_start ? "start " : "end ") +
-                    march.rates + " arrives" + past_turns(led.turns);
+            told_ = in_words(led, march);
             return led.motion;
         }
         return {};
@@ -364,7 +356,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     }
     ConditionNumbersOfLast last(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
     if (!ends.has_state() && !is_mixed && problem.is_determination_asked && report.converged())
-        solution.moved_by_rounding = refuse_undetermined(*window, last, report);
+        solution.report.moved_by_rounding = refuse_undetermined(*window, last, report);
     if (!report.converged() && report.status != SolveStatus::cancelled)
         solution.cannot_begin = why_unseen(numbered);
     finish(tables, *window, ends, method, options.condition, last, solution);

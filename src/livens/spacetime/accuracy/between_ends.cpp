@@ -183,7 +183,10 @@ private:
     }
 
     /// Two solutions may agree by chance to less.
-    static double rounded(const Solution& solution) { return rounding_share * solution.moved_by_rounding; }
+    static double rounded(const Solution& solution)
+    {
+        return rounding_share * solution.report.moved_by_rounding;
+    }
 
     static double error_of(const Solution& solution)
     {
@@ -343,7 +346,7 @@ private:
         const LargestError& found = solution.estimate;
         std::string text = "; more of them help no more: ";
         if (rounded(solution) > span_.accuracy)
-            text += "rounding may move the motion by " + to_text(solution.moved_by_rounding, 3);
+            text += "rounding may move the motion by " + to_text(solution.report.moved_by_rounding, 3);
         else if (found.unseen_load >= 0)
             text += "the law of load '" + model_.loads()[static_cast<std::size_t>(found.unseen_load)].name +
                     "' changes too fast inside them";

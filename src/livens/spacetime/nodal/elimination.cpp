@@ -164,8 +164,8 @@ void NullSpaces::close()
     const int stride = matrix_.stride(e_);
     double* const block = matrix_.block(e_, place_of_row(*layout_, A_), B_);
     for (int r = 0; r < f_; ++r) std::fill_n(block + r * stride, f_, 0.0);
-    lanes::functions(4)->blocks->add_from_left(z_.data() + place(A_), {tables_.n_twists, f_, 1}, product_.data(), f_, block,
-                              stride);
+    lanes::functions(4)->blocks->add_from_left(z_.data() + place(A_), {tables_.n_twists, f_, 1},
+                                               product_.data(), f_, block, stride);
 }
 
 /// P(0) is added at the first node, P(T) taken off at the last.
