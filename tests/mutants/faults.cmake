@@ -1524,8 +1524,8 @@ livens_mutant(NAME elements_between_ends_are_even
 # Two solutions that agree by chance are believed to any digit.
 livens_mutant(NAME rounding_between_ends_is_forgotten
               FILE spacetime/accuracy/between_ends.cpp
-              OLD [[{ return rounding_share * solution.report.moved_by_rounding; }]]
-              NEW [[{ return 0 * solution.report.moved_by_rounding; }]]
+              OLD [[return rounding_share * solution.report.moved_by_rounding;]]
+              NEW [[return 0 * solution.report.moved_by_rounding;]]
               TESTS_OF convergence
               MUST_FAIL AccuracyBetweenEnds.IsGivenUpWhereRoundingIsMore)
 
@@ -1540,8 +1540,8 @@ livens_mutant(NAME bends_between_ends_are_believed
 # The momentum at the end of time enters the balances as that at the start does.
 livens_mutant(NAME border_sign
               FILE spacetime/nodal/elimination.cpp
-              OLD [[last_row[i * 2 * f_ + f_ + i] = -1;]]
-              NEW [[last_row[i * 2 * f_ + f_ + i] = 1;]]
+              OLD [[last_row[i * m + f_ + i] = -1;]]
+              NEW [[last_row[i * m + f_ + i] = 1;]]
               TESTS_OF unit_spacetime
               MUST_FAIL ComponentEquations.HaveAnExactTangent)
 

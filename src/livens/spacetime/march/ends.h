@@ -25,7 +25,7 @@ struct Ends {
     /// stated at their end as far as they can. With the values that are led from, if they are.
     std::vector<Condition> components{};
     std::vector<double> led_values{};
-    int n_numbers = 0;             ///< unknown ones, which as many more components decide
+    int n_numbers = 0;   ///< unknown ones, which as many more components decide
     /// What of these is a whole state, or its places: then all of it is compared in the end.
     Known whole_at_start = Known::nothing, whole_at_end = Known::nothing;
     bool is_end_guessed = false;   ///< else the state at the end is made of that at the start
