@@ -38,9 +38,11 @@ std::vector<StateQuantity> turning_rates(const Model& model)
     if (!all.empty()) return all;
     for (const Body& body : model.bodies()) {
         if (body.is_rotor) continue;
-        const auto three =
-            state_quantities(model, body.name + (body.is_point ? ".velocity" : ".angular_velocity"));
-        all.insert(all.end(), three.begin(), three.end());
+        for (const char* of : {".velocity", ".angular_velocity"}) {
+            if (body.is_point && of[1] == 'a') continue;
+            const std::vector<StateQuantity> three = state_quantities(model, body.name + of);
+            all.insert(all.end(), three.begin(), three.end());
+        }
     }
     return all;
 }
