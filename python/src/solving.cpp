@@ -175,7 +175,8 @@ Result judged(Unjudged&& motion, const std::function<bool()>& goes_on)
     const double seconds = motion.solved.solve_seconds,
                  estimate_seconds = motion.solved.solution.estimate_seconds;
     const Patience patience(goes_on);
-    return {motion.scenario, judged_run(*motion.scenario, std::move(motion.solved), {}), method, seconds,
+    const Shared scenario = motion.solved.found != nullptr ? motion.solved.found : motion.scenario;
+    return {scenario, judged_run(*motion.scenario, std::move(motion.solved), {}), method, seconds,
             estimate_seconds};
 }
 
