@@ -113,6 +113,7 @@ LiveScenario::Outcome LiveScenario::solved() const
         SolvedScenario motion = solve_scenario(scenario, options, scenario.prepared);
         if (motion.solution.motion.mesh.ends.empty())
             throw failure(exit_not_converged, motion.solution.report.message);
+        if (motion.found != nullptr) read.scenario = *motion.found;
         const Run run = judged_run(scenario, std::move(motion), goes_on);
         out.headline = headline_of(run, run.motion.end());
         out.reasons = reasons_of(run);

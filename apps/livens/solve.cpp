@@ -88,7 +88,8 @@ struct Solved {
     std::vector<Run> roots;   ///< the others that were found
     double solve_seconds = 0;
     double estimate_seconds = 0;
-    int signal = 0;   ///< that cancelled the solution
+    int signal = 0;                            ///< that cancelled the solution
+    std::shared_ptr<const Scenario> found{};   ///< see SolvedScenario
 };
 
 /// One scenario of those that are solved, and what there is to say when it is its turn.
@@ -137,6 +138,8 @@ Solved solve_job(Job& job, double share, ProgressLine& line)
 
     const Clock::time_point begin = Clock::now();
     reserve.give_back();
+    solved.found = motion.found;
+    if (solved.found != nullptr) job.scenario = *solved.found;   // its model is that of the run
     const auto goes_on = [] { return InterruptWatch::signal() == 0; };
     solved.roots = judged_roots(scenario, motion, goes_on);
     solved.run = judged_run(scenario, std::move(motion), goes_on);
@@ -167,6 +170,7 @@ std::string json_of(const Solved& solved, const Places& p, const std::vector<Dia
     json.member("estimate_seconds", solved.estimate_seconds);
     write_figures(json, run);
     json.member("start", run.motion.start()).member("end", run.motion.end());
+    if (solved.found != nullptr) write_found(json, *solved.found);
     json.member("output", p.output.string());
     json.key("csv");
     if (p.csv.empty())

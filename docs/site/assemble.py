@@ -445,7 +445,7 @@ PYTHON = {
                "Parameters"],
     "Shapes and tables": ["Shape", "box", "sphere", "cylinder", "capsule", "cone", "ellipsoid", "mesh", "parts", "point",
                           "tube", "table", "visual"],
-    "Solving": ["solve", "solve_many", "Condition", "state", "positions", "momenta"],
+    "Solving": ["solve", "solve_many", "Condition", "state", "positions", "momenta", "unknown"],
     "Methods": ["Method", "Auto", "Lobatto", "Radau", "Mixed", "Midpoint", "Endpoint", "MethodOptions"],
     "Solutions": ["Solution", "load_solution", "Series", "BodySeries", "JointSeries", "LoadSeries", "PointSeries", "SensorSeries",
                   "ReadingSeries", "Parts", "Peak", "Extremes", "compare", "Comparison", "BodyState"],

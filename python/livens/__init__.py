@@ -41,7 +41,7 @@ from ._series import Series
 from ._shown import Extremes, Peak
 from ._solve import solve, solve_many
 from ._state import Coordinates, MechanismState, PlacedBody, PlacedJoint, reach
-from ._values import Condition, Method, Shape, momenta, positions, state, table, visual
+from ._values import Condition, Method, Shape, momenta, positions, state, table, unknown, visual
 
 __all__ = [
     "Added", "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Coordinates", "Diagnostic", "Drive", "Entry", "Equilibrium",
@@ -51,7 +51,7 @@ __all__ = [
     "ReadingSeries", "RestBody", "RestJoint", "ResultFileError", "Section", "Sensor", "SensorSeries", "Series",
     "Shape", "SlowWarning", "Solution", "SolveError", "SolveWarning", "StateMatrices", "__version__", "compare",
     "explain", "from_mjcf", "from_urdf", "load", "load_solution", "momenta", "positions", "reach", "solve", "solve_many", "state",
-    "table", "visual",
+    "table", "unknown", "visual",
 ]
 __all__ += _generated.__all__
 

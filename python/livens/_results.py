@@ -168,6 +168,12 @@ class Solution(Series):
         return dict(json.loads(self._result.resolved))
 
     @property
+    def unknowns(self) -> dict[str, float]:
+        """What was found of unknown numbers, in SI units, by their names: ``"friction.damping"``, ``"time.end"``; of
+        a parameter its own."""
+        return dict(self.options.get("found", {}))
+
+    @property
     def n_elements(self) -> int:
         """Number of time elements."""
         return len(self._result.t) - 1

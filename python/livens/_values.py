@@ -120,6 +120,31 @@ def state(bodies: Mapping[str, Mapping[str, Any]] | None = None) -> Condition:
     return Condition("state", dict(bodies or {}))
 
 
+def unknown(guess: Number, *, low: Number | None = None, high: Number | None = None) -> Any:
+    """A number that is found with the motion, in place of a number of the model, a parameter or the end of time.
+
+    Between conditions at both ends of time: :func:`solve` takes one more for each unknown number. What was found
+    is in ``sol.unknowns``.
+
+    Args:
+        guess: Where to begin, in the unit of the key, or a string with a unit.
+        low: Smallest value.
+        high: Largest value.
+
+    Example:
+        >>> import livens as lv
+        >>> m = lv.Model("throw", gravity=(0, 0, -9.81))
+        >>> ball = m.add_body("ball", lv.point(mass=1))
+        >>> sol = lv.solve(m, lv.unknown(0.5, low=0.1), elements=4, method=lv.Lobatto(3),
+        ...                start={"ball.position": (0, 0, 2), "ball.vx": 3},
+        ...                end={"ball.x": 3, "ball.y": 0, "ball.z": 0})
+        >>> round(sol.unknowns["time.end"], 9)
+        1.0
+    """
+    bounds = {name: value for name, value in (("low", low), ("high", high)) if value is not None}
+    return {"unknown": guess, **bounds}
+
+
 def table(times: Vector, values: Vector | Matrix, interpolation: str | None = None) -> dict[str, Any]:
     """Values over time, for ``table=`` of loads and drives.
 

@@ -178,7 +178,8 @@ Result judged(Unjudged&& motion, const std::function<bool()>& goes_on)
     std::vector<std::shared_ptr<Result>> roots;
     for (Run& run : judged_roots(*motion.scenario, motion.solved, {}))
         roots.push_back(std::make_shared<Result>(Result{motion.scenario, std::move(run), method, 0, 0, {}}));
-    return {motion.scenario,  judged_run(*motion.scenario, std::move(motion.solved), {}),
+    const Shared scenario = motion.solved.found != nullptr ? motion.solved.found : motion.scenario;
+    return {scenario,         judged_run(*motion.scenario, std::move(motion.solved), {}),
             method,           seconds,
             estimate_seconds, std::move(roots)};
 }

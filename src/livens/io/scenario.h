@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +20,8 @@
 #include "livens/spacetime/problem.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+class JsonWriter;
 
 /// The surface of a shape, for pictures: a profile that is turned about d3 in so many steps, then stretched
 /// along d1, d2, d3; or triangles. Its origin is the centre of mass.
@@ -76,8 +80,9 @@ struct Scenario : OutputTimes {
     std::vector<std::vector<ShapePart>> parts;   ///< of the bodies' shapes; none of one that is no union
     Time time;   ///< element ends hold jumps of loads (unless breaks = "ignore") and output times
     Method method;
-    Conditions conditions;   ///< what is given at start and end, and the states there, with their times
-    SolveOptions options;    ///< tolerance, max_iterations, initial, condition
+    Conditions conditions;     ///< what is given at start and end, and the states there, with their times
+    UnknownNumbers unknowns;   ///< by their names in the file; guesses in SI units
+    SolveOptions options;      ///< tolerance, max_iterations, initial, condition
     std::shared_ptr<Prepared> prepared;   ///< what reading has found of the model, for Problem
     std::string resolved;                 ///< all options after defaults, as one JSON object
     /// What its meshes come to, and the texts that it includes, so that a run needs no file beside its own.
@@ -117,6 +122,13 @@ inline constexpr int max_scenario_depth = 64;
 ScenarioResult read_scenario(const std::filesystem::path& file, const ParameterValues& values = {});
 ScenarioResult parse_scenario(std::string text, const std::string& file_name, const MeshSource& meshes = {},
                               const ParameterValues& values = {});
+
+/// The scenario whose unknown numbers are guessed with these values; it reads nothing but what it has read.
+/// Null: it cannot be read, which is a fault of the reader.
+std::shared_ptr<const Scenario> with_guesses(const Scenario& scenario, std::span<const double> values);
+
+/// Its unknown numbers, if it has some, as "found": of a scenario with what was found.
+void write_found(JsonWriter& json, const Scenario& scenario);
 
 /// "mm" in m; 0 for what is no unit of length.
 double unit_of_length(const std::string& unit);

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <utility>
 
+#include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/diagnostics/extremes.h"
 #include "livens/dynamics/start/prepared.h"
@@ -14,19 +15,42 @@
 
 namespace livens {
 
+namespace {
+
+/// From now on the problem is the one that begins with what was found.
+void take_found(std::shared_ptr<const Scenario> found, SolvedScenario& solved)
+{
+    if (found == nullptr)
+        throw InputError({"internal", "",
+                          "this should not happen: the numbers that were found make no scenario", "", "", "",
+                          ""});
+    solved.problem.conditions = found->conditions;
+    solved.problem.unknowns = found->unknowns;
+    solved.problem.prepared = found->prepared;
+    for (const UnknownNumber& one : found->unknowns.numbers)
+        solved.solution.report.notes.push_back("found: " + one.name + " = " + to_text(one.guess, 15));
+    solved.found = std::move(found);
+}
+
+}   // namespace
+
 SolvedScenario solve_scenario(const Scenario& scenario, SolveOptions options,
                               const std::shared_ptr<Prepared>& prepared, std::function<State(double t)> guess)
 {
     options.judge = false;   // not part of what is timed, nor is the estimate
     Problem problem{scenario.conditions, std::move(guess), nullptr, prepared};
+    problem.unknowns = scenario.unknowns;
     const auto begin = std::chrono::steady_clock::now();
     SolvedScenario solved{solve(scenario.model, problem, scenario.time, scenario.method, options),
                           std::move(problem)};
     solved.solve_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() -
                            solved.solution.estimate_seconds;
-    estimate(scenario.model, solved.problem, scenario.method, options, solved.solution);
+    const FoundNumbers& numbers = solved.solution.numbers;
+    if (numbers.rebuilt.model != nullptr) take_found(with_guesses(scenario, numbers.values), solved);
+    const Scenario& now = solved.found != nullptr ? *solved.found : scenario;
+    estimate(now.model, solved.problem, now.method, options, solved.solution);
     for (Solution& root : solved.solution.roots)
-        estimate(scenario.model, solved.problem, scenario.method, options, root);
+        estimate(now.model, solved.problem, now.method, options, root);
     return solved;
 }
 
@@ -67,8 +91,10 @@ std::vector<Run> judged_roots(const Scenario& scenario, SolvedScenario& solved,
     return runs;
 }
 
-Run judged_run(const Scenario& scenario, SolvedScenario&& solved, const std::function<bool()>& goes_on)
+Run judged_run(const Scenario& given, SolvedScenario&& solved, const std::function<bool()>& goes_on)
 {
+    const std::shared_ptr<const Scenario> found = solved.found;
+    const Scenario& scenario = found != nullptr ? *found : given;
     Solution& solution = solved.solution;
     judge(scenario.model, solved.problem, scenario.options, solution, goes_on);
     const Method method = solution.method;

@@ -16,6 +16,8 @@ namespace [[gnu::visibility("default")]] livens {
 struct SolvedScenario {
     Solution solution;
     Problem problem;
+    /// Of a scenario with unknown numbers: the one that begins with what was found. Null: there is none.
+    std::shared_ptr<const Scenario> found{};
     double solve_seconds = 0;   ///< without what the estimate of the error took
 };
 

@@ -186,8 +186,23 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
 }
 
 /// Unknown numbers: those of the problem itself, before any is looked for.
-void check_unknowns(const Problem& problem)
+void check_unknowns(const Problem& problem, const Time& time, const SolveOptions& options)
 {
+    const Conditions& given = problem.conditions;
+    const bool is_whole =
+        given.is_periodic || given.at_start != Known::nothing || given.at_end != Known::nothing;
+    const auto refuse = [&](bool is_wrong, const char* path, const char* what, const char* help) {
+        if (is_wrong && !problem.unknowns.is_empty() && !given.components.empty())
+            throw InputError({"conditions-method", path,
+                              std::string(what) + " is not solved for together with unknown numbers", "", "",
+                              "", help});
+    };
+    refuse(std::holds_alternative<Span>(time), "time.accuracy", "a motion to an accuracy",
+           "give elements instead of the accuracy");
+    refuse(is_whole, given.is_periodic ? "time.periodic" : "start.given",
+           "a periodic motion, or one with places of all bodies at an end,",
+           "give its conditions by component");
+    refuse(options.roots > 1, "method.roots", "more than one motion", "leave roots out");
     for (const UnknownNumber& number : problem.unknowns.numbers) {
         const std::string path = "unknown[" + number.name + "]", named = "the unknown '" + number.name + "'";
         if (!std::isfinite(number.guess))
@@ -256,7 +271,7 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
         throw InputError({"no-bodies", "body", "a model needs at least one body", "", "", "", "add a body"});
     refuse_rotors(model, problem.conditions, method);
     refuse_special_rows(model, method);
-    check_unknowns(problem);
+    check_unknowns(problem, time, options);
     if (!problem.conditions.has_components())
         check_conditions(model, problem.conditions, method);
     else

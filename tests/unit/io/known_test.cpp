@@ -108,7 +108,7 @@ TEST(KnownComponents, HaveOneMessageForAMistakeAtItsPlace)
         {"\"tip.vz\" = 1.5", "\"tip.az\" = 1.5", "conditions-not-smooth"},
         {"\"tip.vz\" = 1.5", "\"top.vz\" = 1.5", "conditions-unknown"},
         {"\"tip.vz\" = 1.5", "\"tip.vz\" = [1, 2, 3]", "wrong-type"},
-        {"\"tip.vz\" = 1.5", "\"tip.vz\" = { unknown = 1 }", "wrong-type"},
+        {"\"tip.vz\" = 1.5", "\"tip.vz\" = { number = 1 }", "wrong-type"},
         {"\"tip.vz\" = 1.5", "\"rod.y\" = 0.1", "conditions-joints"},
         {"\"tip.vz\" = 1.5", "\"ball.vx\" = 1.5", "conditions-twice"},
         {"\"ball.velocity\" = [", "\"ball.velocity\" = [0, ", "wrong-type"},

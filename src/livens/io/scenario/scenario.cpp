@@ -4,14 +4,19 @@
 // are not tried, so that one mistake is told once.
 #include "livens/io/scenario.h"
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
+#include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/dynamics/start/prepared.h"
 #include "livens/io/scenario/assembly.h"
 #include "livens/io/scenario/run/run.h"
 #include "livens/io/scenario/text/reading.h"
 #include "livens/io/scenario/text/tree.h"
+#include "livens/io/scenario/text/unknown_nodes.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens {
@@ -84,11 +89,71 @@ std::vector<Override> overrides_of(const ParameterValues& values)
     return all;
 }
 
+/// The problem of a tree with other numbers, as often as it is asked for.
+class Rebuilding {
+public:
+    Rebuilding(NumberedTree tree, const MeshSource& files, const std::vector<Override>& overrides)
+        : tree_(std::move(tree)), files_(files)
+    {
+        for (const Override& one : overrides)   // of an unknown parameter: its guess
+            if (std::ranges::find(tree_.unknowns, one.name, &StatedUnknown::name) == tree_.unknowns.end())
+                overrides_.push_back(one);
+    }
+
+    const std::vector<StatedUnknown>& unknowns() const { return tree_.unknowns; }
+
+    /// Throws InputError with the first finding.
+    Rebuilt operator()(std::span<const double> values) const
+    {
+        Findings findings;
+        Rebuilt rebuilt;
+        const Node root = with_numbers(tree_, values);
+        AssemblySources sources(files_, findings);
+        Assembly assembly(root, "", overrides_, sources);
+        Scenario scenario;
+        if (assembly.is_readable()) {
+            assembly.read_model();
+            assembly.remember_places();
+            read_run(assembly.builder(), scenario);
+        }
+        if (findings.n_errors() > 0) {
+            const Diagnostic first = findings.take("").front();
+            throw InputError({first.code, "", first.message, "", "", first.note, first.help});
+        }
+        return {std::make_shared<const Model>(std::move(assembly.builder().model())),
+                scenario.conditions.components, start_of(scenario.time), end_of(scenario.time)};
+    }
+
+private:
+    NumberedTree tree_;
+    MeshSource files_;
+    std::vector<Override> overrides_;
+};
+
+UnknownNumbers unknown_numbers(NumberedTree tree, const MeshSource& files,
+                               const std::vector<Override>& overrides)
+{
+    const auto rebuilding = std::make_shared<const Rebuilding>(std::move(tree), files, overrides);
+    UnknownNumbers unknowns;
+    for (const StatedUnknown& one : rebuilding->unknowns()) {
+        UnknownNumber number{.name = one.name, .guess = one.guess};
+        if (one.low) number.low = *one.low;
+        if (one.high) number.high = *one.high;
+        unknowns.numbers.push_back(std::move(number));
+    }
+    unknowns.rebuild = [rebuilding](std::span<const double> values) { return (*rebuilding)(values); };
+    return unknowns;
+}
+
 /// Everything behind the parser. The scenario counts if there is no error.
-void build(const Node& root, TreePart part, const MeshSource& files, const ParameterValues& values,
+void build(const Node& stated, TreePart part, const MeshSource& files, const ParameterValues& values,
            Scenario& scenario, Findings& findings)
 {
-    if (!check_format(root, findings)) return;
+    if (!check_format(stated, findings)) return;
+    const int before = findings.n_errors();
+    std::optional<NumberedTree> numbered = with_guesses(stated, overrides_of(values), findings);
+    if (findings.n_errors() > before) return;
+    const Node& root = numbered ? numbered->root : stated;
     AssemblySources sources(files, findings);
     const bool has_file = files.folder && !scenario.file.empty();
     Assembly assembly(root, has_file ? std::filesystem::path(scenario.file).filename().generic_string() : "",
@@ -113,9 +178,16 @@ void build(const Node& root, TreePart part, const MeshSource& files, const Param
     scenario.conditions.start = builder.model().start();
     scenario.conditions.start.t = start_of(scenario.time);
     scenario.conditions.end.t = end_of(scenario.time);
+    if (numbered) {
+        for (const StatedUnknown& one : numbered->unknowns)
+            builder.remember("unknown[" + one.name + "]", one.place);
+        NumberedTree own{with_numbers(*numbered, {}), numbered->unknowns};   // this one is still in use
+        scenario.unknowns = unknown_numbers(std::move(own), files, overrides_of(values));
+    }
     const bool fits = builder.guard("method", [&] {
-        check_method(builder.model(), {scenario.conditions}, scenario.time, scenario.method,
-                     scenario.options);
+        Problem problem{scenario.conditions};
+        problem.unknowns = scenario.unknowns;
+        check_method(builder.model(), problem, scenario.time, scenario.method, scenario.options);
     });
     // The ends of time are closed once here, for the complaint; the solution takes them from there.
     scenario.prepared = std::make_shared<Prepared>();
@@ -175,6 +247,17 @@ ScenarioResult io_internal::read_tree(const Node& root, std::string text, const 
     if (findings.n_errors() == 0 && part == TreePart::whole) result.scenario = std::move(scenario);
     result.diagnostics = findings.take("");
     return result;
+}
+
+std::shared_ptr<const Scenario> with_guesses(const Scenario& scenario, std::span<const double> values)
+{
+    std::vector<std::string> names;
+    for (const UnknownNumber& one : scenario.unknowns.numbers) names.push_back(one.name);
+    MeshSource kept;
+    kept.kept = scenario.meshes;
+    ScenarioResult read =
+        parse_scenario(with_found_guesses(scenario.text, names, values), scenario.file, kept);
+    return read.scenario ? std::make_shared<const Scenario>(std::move(*read.scenario)) : nullptr;
 }
 
 ScenarioResult read_scenario(const std::filesystem::path& file, const ParameterValues& values)

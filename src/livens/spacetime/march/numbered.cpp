@@ -56,7 +56,7 @@ NumberedProblem::Instance NumberedProblem::at(std::span<const double> values) co
     Instance made{unknowns_.rebuild(values), ends_, mesh_};
     const Rebuilt& rebuilt = made.rebuilt;
     if (!(rebuilt.end > rebuilt.start))
-        throw InputError({"time-order", "time.end", "the end of time is not after its start",
+        throw InputError({"time-end", "time.end", "the end of time is not after its start",
                           to_text(rebuilt.end, 6), "> " + to_text(rebuilt.start, 6), "", ""});
     const std::vector<double> anchors = anchors_of(*rebuilt.model, rebuilt.start, rebuilt.end);
     if (anchors.size() != anchors_.size())

@@ -26,6 +26,18 @@ void write_components(JsonWriter& json, const std::vector<Condition>& components
 
 }   // namespace
 
+}   // namespace livens::inline io_internal
+
+void livens::write_found(JsonWriter& json, const Scenario& scenario)
+{
+    if (scenario.unknowns.is_empty()) return;
+    json.key("found").begin_object();
+    for (const UnknownNumber& one : scenario.unknowns.numbers) json.member(one.name, one.guess);
+    json.end_object();
+}
+
+namespace livens::inline io_internal {
+
 std::string resolved_run(const Builder& builder, const Scenario& scenario)
 {
     const Section& time = *only_section(builder.run(), "time");
@@ -64,6 +76,7 @@ std::string resolved_run(const Builder& builder, const Scenario& scenario)
     json.member("initial", word_of(options.initial)).end_object();
     json.key("end").begin_object().member("given", word_of(scenario.conditions.at_end)).end_object();
     write_components(json, scenario.conditions.components);
+    write_found(json, scenario);
     return json.end_object().text();
 }
 

@@ -58,7 +58,7 @@ std::vector<std::string_view> types_of(Form form)
     case Form::integer:
         return {"integer", "string"};
     case Form::number:
-        return {"number", "string"};
+        return {"number", "string", "object"};   // of an unknown one
     case Form::text:
     case Form::choice:
         return {"string"};
@@ -115,9 +115,9 @@ void write_keywords(JsonWriter& json, const Key& key, Form form)
         json.member("const", true);
         break;
     case Form::number:
-        write_pattern(json);
-        write_range(json, key);
-        break;
+        if (key.type.form != Form::table && key.type.other != Form::table)
+            json.key("required").begin_array().value("unknown").end_array();
+        [[fallthrough]];
     case Form::integer:
         write_pattern(json);
         write_range(json, key);
@@ -133,7 +133,13 @@ void write_keywords(JsonWriter& json, const Key& key, Form form)
         [[fallthrough]];
     case Form::factors:
         json.key("additionalProperties").begin_object();
-        json.key("type").begin_array().value("number").value("string").end_array().end_object();
+        json.key("type")
+            .begin_array()
+            .value("number")
+            .value("string")
+            .value("object")
+            .end_array()
+            .end_object();
         break;
     case Form::quantities:
         json.key("additionalProperties").begin_object();
@@ -142,6 +148,7 @@ void write_keywords(JsonWriter& json, const Key& key, Form form)
             .value("number")
             .value("string")
             .value("array")
+            .value("object")
             .end_array()
             .end_object();
         break;

@@ -210,6 +210,28 @@ end = "5*2*pi*sqrt(2*L/(3*g))"
 - Names consist of letters, digits and `_`, and differ from functions, `pi` and `t`. Unused parameters cause a
   warning.
 
+## Unknown numbers
+
+Between conditions at both ends of time (`[start.known]`, `[end.known]`) a number of the model, a parameter or
+the end of time can be unknown: `{ unknown = 0.3, low = 0 }` in place of the number says a guess and, if need
+be, bounds.
+
+```toml
+[[load]]
+name = "friction"
+type = "spring"
+joint = "pivot"
+stiffness = 0
+damping = { unknown = 0.3, low = 0 }
+```
+
+- There must be as many more conditions as unknown numbers. For the family lobatto, with `elements`.
+- Guess and bounds are numbers, strings with units, or expressions, as everywhere. Whole numbers and words
+  cannot be unknown; a number inside of a formula can as a parameter: `A = { unknown = 2 }` in `[parameters]`.
+- What is found is a note of the result. The scenario in the result has it as its guess, so that it is that of
+  the motion.
+- `--set L=0.3` replaces the guess of an unknown parameter.
+
 ## Lists and limits
 
 A matrix is a list of rows: `directors = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]` lists d1, d2, d3.

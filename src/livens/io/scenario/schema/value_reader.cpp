@@ -34,6 +34,7 @@ public:
 private:
     bool is_of_other_form(const Node& node) const
     {
+        if (node.is_unknown) return false;
         switch (key_.type.other) {
         case Form::choice:
             return node.kind == NodeKind::text && index_of(key_.choices, node.text()) >= 0;
@@ -58,6 +59,7 @@ private:
 
     bool read(Form form, const Node& node)
     {
+        if (node.is_unknown && form != Form::number) return takes_no_unknown(node);
         switch (form) {
         case Form::flag:
             return read_flag(node);
@@ -228,8 +230,16 @@ private:
                                {"", is_version ? "this version of livens reads format = 1" : ""});
     }
 
+    bool takes_no_unknown(const Node& node)
+    {
+        return findings_.error(node.place, "unknown-place",
+                               subject() + " takes no number that could be unknown",
+                               {"it must be " + describe_type(key_), "give the value itself"});
+    }
+
     bool read_text(const Node& node, std::string& text)
     {
+        if (node.is_unknown) return takes_no_unknown(node);
         if (node.kind != NodeKind::text) return wrong_type(node, "strings are written in quotes");
         text = node.text();
         return true;

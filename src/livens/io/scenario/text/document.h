@@ -21,6 +21,7 @@ struct Node {
     enum class Kind : std::uint8_t { truth, integer, number, text, array, table, date };
 
     Kind kind = Kind::table;
+    bool is_unknown = false;                ///< the value of an unknown number, see NumberedTree
     SourceLocation place;                   ///< of the value; of its header for a table with one
     double number = 0;                      ///< of truth, integer, number
     std::unique_ptr<NodeContent> content;   ///< of text, array, table

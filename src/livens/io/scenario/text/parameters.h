@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "livens/io/scenario/text/amount.h"
@@ -95,6 +96,9 @@ private:
 
 /// The text of a file, with the values of overrides that are texts instead of its own.
 std::string with_set_values(std::string text, const Parameters& parameters);
+
+/// The same with what is to stand where values begin, which must be in the order of the text.
+std::string with_values_at(std::string text, std::span<const std::pair<SourceLocation, std::string>> values);
 
 /// Of a file without any.
 inline const Parameters& no_parameters()

@@ -61,18 +61,22 @@ std::string in_toml(const Parameters::One& one)
 
 }   // namespace
 
-std::string with_set_values(std::string text, const Parameters& parameters)
+std::string with_values_at(std::string text, std::span<const std::pair<SourceLocation, std::string>> values)
 {
-    std::vector<const Parameters::One*> set;
-    for (const Parameters::One& one : parameters.all())
-        if (one.is_set && !one.set_by.text.empty()) set.push_back(&one);
     // From the end on, so that places before stay where they are.
-    for (auto one = set.rbegin(); one != set.rend(); ++one) {
-        const std::size_t begin = byte_at(text, (*one)->place);
-        if (begin >= text.size()) continue;
-        text.replace(begin, end_of_value(text, begin) - begin, in_toml(**one));
+    for (auto one = values.rbegin(); one != values.rend(); ++one) {
+        const std::size_t begin = byte_at(text, one->first);
+        if (begin < text.size()) text.replace(begin, end_of_value(text, begin) - begin, one->second);
     }
     return text;
+}
+
+std::string with_set_values(std::string text, const Parameters& parameters)
+{
+    std::vector<std::pair<SourceLocation, std::string>> set;
+    for (const Parameters::One& one : parameters.all())
+        if (one.is_set && !one.set_by.text.empty()) set.emplace_back(one.place, in_toml(one));
+    return with_values_at(std::move(text), set);
 }
 
 }   // namespace livens::inline io_internal

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Unknown numbers in files: { unknown = guess, low = .., high = .. } in place of a number.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "livens/dynamics/start/prepared.h"
+#include "livens/io/solve_scenario.h"
+#include "unit/io/scenario_text.h"
+
+namespace livens {
+namespace {
+
+using test::find;
+using test::read;
+using test::replaced;
+using test::shown;
+
+const std::string pendulum = R"(format = 1
+gravity = [0, 0, -9.81]
+
+[parameters]
+L = "100 cm"
+
+[time]
+end = 2
+elements = 20
+
+[method]
+family = "lobatto"
+degree = 8
+
+[[body]]
+name = "bob"
+mass = 1
+inertia = [0.1, 0.1, 0.1]
+position = ["L", 0, 0]
+
+[[joint]]
+name = "pivot"
+type = "revolute"
+between = ["world", "bob"]
+at = [0, 0, 0]
+axis = [0, 1, 0]
+
+[[load]]
+name = "friction"
+type = "spring"
+joint = "pivot"
+stiffness = 0
+damping = { unknown = 0.3, low = 0 }
+
+[start.known]
+"pivot.angle" = 0
+"pivot.angle_rate" = 0
+
+[end.known]
+"pivot.angle" = "60 deg"
+)";
+
+SolvedScenario solved(const Scenario& scenario)
+{
+    return solve_scenario(scenario, scenario.options, std::make_shared<Prepared>());
+}
+
+/// What arrives at the end of a march from the start that was found, in the model that was found.
+void expect_march_arrives(const SolvedScenario& s)
+{
+    ASSERT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+    ASSERT_NE(s.found, nullptr);
+    SolveOptions options;
+    options.tolerance = 1e-13;
+    const Motion& motion = s.solution.motion;
+    const Motion march = solve(s.found->model, {{motion.at_end(0)}}, motion.mesh, Lobatto{8}, options).motion;
+    const Matrix34 off = march.at_end(march.n_elements()).X[0] - motion.at_end(motion.n_elements()).X[0];
+    EXPECT_LE(norm(off), 1e-9);
+}
+
+TEST(UnknownsOfFiles, AreFoundAndStandInTheScenarioOfTheResult)
+{
+    const ScenarioResult result = read(pendulum);
+    ASSERT_TRUE(result.scenario) << shown(result);
+    ASSERT_EQ(result.scenario->unknowns.numbers.size(), 1u);
+    EXPECT_EQ(result.scenario->unknowns.numbers[0].name, "friction.damping");
+    EXPECT_EQ(result.scenario->unknowns.numbers[0].low, 0);
+    SolvedScenario s = solved(*result.scenario);
+    expect_march_arrives(s);
+    const double damping = s.solution.numbers.values[0];
+    EXPECT_EQ(s.found->unknowns.numbers[0].guess, damping);
+    EXPECT_GT(std::abs(damping - 0.3), 0.1);
+    const livens::Run run = judged_run(*result.scenario, std::move(s), {});
+    EXPECT_TRUE(run.report.converged()) << run.report.message;
+    EXPECT_NE(run.resolved.find("\"friction.damping\""), std::string::npos);
+    const ScenarioResult again = read(run.scenario_text);
+    ASSERT_TRUE(again.scenario) << shown(again);
+    const SolvedScenario same = solved(*again.scenario);
+    EXPECT_NEAR(same.solution.numbers.values[0], damping, 1e-12);
+}
+
+TEST(UnknownsOfFiles, MayBeParametersThatMuchIsComputedFrom)
+{
+    std::string text = replaced(pendulum, "L = \"100 cm\"", "L = { unknown = \"100 cm\", high = \"3 m\" }");
+    text = replaced(text, "{ unknown = 0.3, low = 0 }", "0.3");
+    const ScenarioResult result = read(text);
+    ASSERT_TRUE(result.scenario) << shown(result);
+    EXPECT_EQ(result.scenario->unknowns.numbers[0].name, "L");
+    EXPECT_EQ(result.scenario->unknowns.numbers[0].guess, 1);
+    EXPECT_EQ(result.scenario->unknowns.numbers[0].high, 3);
+    const SolvedScenario s = solved(*result.scenario);
+    expect_march_arrives(s);
+    const double L = s.solution.numbers.values[0];
+    EXPECT_EQ(s.found->model.bodies()[0].X(0, 0), L);
+    EXPECT_NE(s.found->text.find(" m\", high"), std::string::npos) << s.found->text;
+}
+
+TEST(UnknownsOfFiles, MayBeTheEndOfTimeAndAPlace)
+{
+    std::string text = replaced(pendulum, "end = 2", "end = { unknown = 1.9 }");
+    text = replaced(text, "{ unknown = 0.3, low = 0 }", "0.3");
+    const ScenarioResult result = read(text);
+    ASSERT_TRUE(result.scenario) << shown(result);
+    const SolvedScenario s = solved(*result.scenario);
+    expect_march_arrives(s);
+    EXPECT_EQ(end_of(s.found->time), s.solution.motion.end());
+    EXPECT_EQ(result.scenario->unknowns.numbers[0].name, "time.end");
+
+    // the pivot goes with an unknown height, as does what is known of the bob
+    text = replaced(pendulum, "at = [0, 0, 0]", "at = [{ unknown = 0.1, low = -0.5 }, 0, 0]");
+    text = replaced(text, "{ unknown = 0.3, low = 0 }", "0.3");
+    const ScenarioResult place = read(text);
+    ASSERT_TRUE(place.scenario) << shown(place);
+    EXPECT_EQ(place.scenario->unknowns.numbers[0].name, "pivot.at.x");
+    expect_march_arrives(solved(*place.scenario));
+}
+
+/// The foot of the rocker is not known.
+const std::string four_bar = R"(format = 1
+gravity = [0, 0, -9.81]
+[parameters]
+base = 2
+[time]
+end = 0.3
+elements = 10
+[method]
+family = "lobatto"
+degree = 6
+[[body]]
+name = "crank"
+mass = 1
+inertia = [0.1, 0.1, 0.1]
+position = [0, 0, 0.5]
+[[body]]
+name = "coupler"
+mass = 1
+inertia = [0.1, 0.1, 0.1]
+position = ["base/2", 0, 1]
+[[body]]
+name = "rocker"
+mass = 1
+inertia = [0.1, 0.1, 0.1]
+position = ["base", 0, 0.5]
+[[joint]]
+name = "A"
+type = "revolute"
+between = ["world", "crank"]
+at = [0, 0, 0]
+axis = [0, 1, 0]
+[[joint]]
+name = "B"
+type = "revolute"
+between = ["crank", "coupler"]
+at = [0, 0, 1]
+axis = [0, 1, 0]
+[[joint]]
+name = "C"
+type = "revolute"
+between = ["coupler", "rocker"]
+at = ["base", 0, 1]
+axis = [0, 1, 0]
+[[joint]]
+name = "D"
+type = "revolute"
+between = ["world", "rocker"]
+at = ["base", 0, { unknown = 0, low = -0.5, high = 0.5 }]
+axis = [0, 1, 0]
+[start.known]
+"A.angle" = "20 deg"
+"A.angle_rate" = 1
+"D.angle" = "22 deg"
+)";
+
+/// Two angles of a four-bar say where a joint is: they follow from each other while it is known.
+TEST(UnknownsOfFiles, MayBeThePlaceOfAJointOfAClosedLoop)
+{
+    const ScenarioResult result = read(four_bar);
+    ASSERT_TRUE(result.scenario) << shown(result);
+    const SolvedScenario s = solved(*result.scenario);
+    expect_march_arrives(s);
+    const double z = s.solution.numbers.values[0];
+    EXPECT_GT(std::abs(z), 1e-3);
+    // by the closure of the loop alone: crank 1 from (0, 0), rocker 1 - z from (2, z), coupler 2
+    const double a = 20 * M_PI / 180, d = 22 * M_PI / 180;
+    const double bx = std::sin(a), bz = std::cos(a), r = 1 - z, cx = 2 + r * std::sin(d),
+                 cz = z + r * std::cos(d);
+    EXPECT_NEAR(std::hypot(cx - bx, cz - bz), 2, 1e-10);
+}
+
+TEST(UnknownsOfFiles, ThatAreWrongAreRefusedWhereTheyStand)
+{
+    struct Wrong {
+        std::string from, to, code;
+    };
+    const Wrong cases[] = {
+        {"low = 0 }", "low = 1 }", "unknown-guess"},
+        {"low = 0 }", "low = 2, high = 1 }", "unknown-bounds"},
+        {"low = 0 }", "most = 1 }", "unknown-key"},
+        {"unknown = 0.3", "unknown = true", "wrong-type"},
+        {"unknown = 0.3", "unknown = \"3 m\"", "unit"},
+        {"unknown = 0.3", "unknown = \"3*M\"", "expression-name"},
+        {"low = 0 }", "low = \"1 m\" }", "unit"},
+        {"elements = 20", "elements = { unknown = 20 }", "unknown-place"},
+        {"type = \"spring\"", "type = { unknown = 3 }", "unknown-place"},
+        {"elements = 20", "accuracy = 1e-6", "conditions-method"},
+        {"family = \"lobatto\"", "family = \"radau\"", "conditions-method"},
+        {"end = 2", "end = { unknown = 2 }", "conditions-too-few"},
+    };
+    for (const Wrong& wrong : cases) {
+        const std::string text = replaced(pendulum, wrong.from, wrong.to);
+        const ScenarioResult result = read(text);
+        EXPECT_FALSE(result.scenario) << wrong.to;
+        const Diagnostic* told = find(result, wrong.code);
+        ASSERT_NE(told, nullptr) << wrong.to << '\n' << shown(result);
+        EXPECT_GT(told->line, 0) << wrong.to;
+    }
+    const ScenarioResult march = read(pendulum.substr(0, pendulum.find("[start.known]")));
+    ASSERT_NE(find(march, "unknown-march"), nullptr) << shown(march);
+}
+
+}   // namespace
+}   // namespace livens
