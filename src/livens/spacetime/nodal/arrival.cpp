@@ -73,7 +73,7 @@ FlowDerivative flow_derivative(const ModelTables& tables, const TimeMesh& mesh, 
     const std::unique_ptr<Elimination> whole = null_space_elimination(tables, layout, chain_solver());
     whole->begin(layout, system.nodes());
     system.form_tangent(*whole);
-    whole->close_with(rows_of_a_state(f));
+    whole->close_with(rows_of_a_state(f), DenseMatrix());
     if (!whole->factorise()) return {};
     const auto n_rows = static_cast<std::size_t>(layout.n_nodes()) * static_cast<std::size_t>(f);
     std::vector<double> rows(n_rows + 2 * static_cast<std::size_t>(f)),
