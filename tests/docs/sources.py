@@ -94,6 +94,8 @@ TIES = [
     ("is more than «1e-4» of the largest motion", f"{TIME}/solve_mesh.cpp", r"undetermined = ([^;]+);"),
     ("and «0.7», «1.3», «0.4» and «1.6» of the stated ones", f"{TIME}/guess.cpp",
      r"\{(0\.7), false.*?\{(1\.3), false.*?\{(0\.4), false.*?\{(1\.6), false"),
+    ("theta_j (1 \\pm 2 h)$, $h = «10^{-4}»$", f"{TIME}/march/numbered.cpp", r"double difference = ([^;]+);"),
+    ("rounding may move by more than $«10^{-4}»$ of itself", f"{TIME}/solve_mesh.cpp", r"undetermined = ([^;]+);"),
     ("whose ends are at $s \\pm «10^{-5}»$", f"{TIME}/curve.cpp", r"of_share = ([^;]+);"),
     ("unless the next one may be at least «1.4» times as long", f"{TIME}/march/step_size_controller.cpp", r"worth_a_factor = ([^;]+);"),
     ("and less than «1.4» times its length is to be had", f"{TIME}/march/step_size_controller.cpp", r"worth_a_factor = ([^;]+);"),

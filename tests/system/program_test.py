@@ -285,8 +285,8 @@ type = "rod"
 between = ["world", "bob"]
 points = [[0, 0, 0], [0, 0, 0]]
 [time]
-end = 1
-elements = 20
+end = 2
+elements = 60
 [method]
 max_iterations = STEPS
 [start]

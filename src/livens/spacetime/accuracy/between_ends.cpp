@@ -34,7 +34,7 @@ constexpr double telling = 1e-2;        // errors that are larger say no more th
 constexpr double most_response = 100;   // an error by what elements lose together
 constexpr double wasteful = 1.5;        // times the elements that are needed
 /// Of what rounding may move the motion by, if all of it went the worst way: what it does move it by.
-constexpr double rounding_share = 0.2;
+constexpr double rounding_share = 0.5;
 constexpr double nothing = 1e-4;           // of the error: what elements lose together does not make it
 constexpr double coarsened_share = 2e-3;   // of the accuracy: what longer elements may lose together
 constexpr double near_rounding = 10;   // times what rounding makes of the motion: errors that may be no more
