@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Couples between two bodies: `reaction` of a torque."""
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -23,9 +27,9 @@ def angular_momentum(sol: lv.Solution, body: str, inertia: np.ndarray) -> np.nda
 
 @pytest.mark.parametrize("frame", ["world", "body"])
 @pytest.mark.parametrize("reaction", [True, False])
-def test_a_couple_leaves_the_sum_of_angular_momenta(frame: str, reaction: bool) -> None:
+def test_a_couple_leaves_the_sum_of_angular_momenta(frame: Any, reaction: bool) -> None:
     m = two_bodies()
-    m.add_torque("drive", "wheel", **({"reaction": "ship"} if reaction else {}), frame=frame, value=(0.05, 0, 0.4))
+    m.add_torque("drive", "wheel", reaction="ship" if reaction else None, frame=frame, value=(0.05, 0, 0.4))
     sol = lv.solve(m, 2, accuracy=1e-10, output=0.25)
     ship = 3 / 12 * np.array([0.3**2 + 0.2**2, 0.4**2 + 0.2**2, 0.4**2 + 0.3**2])
     wheel = 1 / 12 * np.array([0.2**2 + 0.05**2, 0.2**2 + 0.05**2, 0.2**2 + 0.2**2])
@@ -34,26 +38,24 @@ def test_a_couple_leaves_the_sum_of_angular_momenta(frame: str, reaction: bool) 
     change = np.abs(total - total[0]).max()
     assert np.abs(of_wheel - of_wheel[0]).max() > 0.05
     assert change < 1e-9 if reaction else change > 0.05
-    again = lv.Model.from_toml(m.to_toml())
-    assert again.to_toml() == m.to_toml()
+    assert lv.load(text=m.to_toml()) == m
 
 
 @pytest.mark.parametrize(("other", "code"), [("wheel", "load-self"), ("nobody", "body-unknown")])
 def test_what_takes_no_reaction_is_refused(other: str, code: str) -> None:
     m = two_bodies()
-    with pytest.raises(lv.Error) as failed:
+    with pytest.raises(lv.InputError) as failed:
         m.add_torque("drive", "wheel", reaction=other, value=(0, 0, 1))
         lv.solve(m, 1)
-    assert failed.value.code == code
+    assert code in str(failed.value)
 
 
 def test_a_point_takes_no_couple() -> None:
     m = two_bodies()
-    m.add_body("mote", mass=1, position=(0, 2, 0))
-    m.add_torque("drive", "wheel", reaction="mote", value=(0, 0, 1))
-    with pytest.raises(lv.Error) as failed:
+    m.add_body("mote", lv.point(mass=1), position=(0, 2, 0))
+    with pytest.raises(lv.InputError, match="mote"):
+        m.add_torque("drive", "wheel", reaction="mote", value=(0, 0, 1))
         lv.solve(m, 1)
-    assert "mote" in str(failed.value)
 
 
 def test_the_world_takes_whatever_it_is_given() -> None:

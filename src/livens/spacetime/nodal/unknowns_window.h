@@ -48,6 +48,7 @@ private:
     int n_unknowns() const override { return now_->window.equations().n_unknowns(); }
     bool residual() override { return now_->window.equations().residual(); }
     bool factorise() override;
+    using ElementMonitor::solve;
     void solve(std::span<double> dx) override;
     bool move(std::span<const double> dx, double damping) override;
     void keep() override;
