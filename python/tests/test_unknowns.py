@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Numbers that are found with the motion, from Python."""
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import livens as lv
+
+G = 9.81
+
+
+def pendulum(damping: object = 0.0, length: float = 1.0) -> lv.Model:
+    """A point on a massless rod, level at the start."""
+    m = lv.Model(gravity=(0, 0, -G))
+    m.add_body("bob", lv.point(mass=1), position=(length, 0, 0))
+    m.add_rod("rod", ("world", (0, 0, 0)), ("bob", (0, 0, 0)), length=length)
+    m.add_drag("air", "bob", linear=damping)
+    return m
+
+
+def test_a_throw_finds_its_duration() -> None:
+    """Thrown at 45 degrees with 10 m/s: back at its height after 2 v sin / g."""
+    m = lv.Model(gravity=(0, 0, -G))
+    m.add_body("ball", lv.point(mass=0.3))
+    v = 10 * math.sqrt(0.5)
+    sol = lv.solve(m, lv.unknown(1.0, low=0.2, high=3), elements=6,
+                   start={"ball.x": 0, "ball.y": 0, "ball.z": 0, "ball.vx": v, "ball.vy": 0, "ball.vz": v}, end={"ball.z": 0})
+    found = sol.unknowns["time.end"]
+    assert found == pytest.approx(2 * v / G, rel=1e-11)
+    assert sol.t[-1] == pytest.approx(found, rel=1e-14)
+    assert sol["ball"].position[-1][0] == pytest.approx(v * found, rel=1e-11)
+
+
+def test_damping_is_found_and_a_march_confirms_it() -> None:
+    there = {"bob.z": -math.sqrt(3) / 2}
+    begin = {"bob.y": 0, "bob.z": 0, "bob.vy": 0, "bob.vz": 0}
+    sol = lv.solve(pendulum(lv.unknown(0.4, low=0, high=3)), 2, elements=20, method=lv.Lobatto(8), start=begin, end=there)
+    c = sol.unknowns["air.linear"]
+    march = lv.solve(pendulum(c), 2, elements=40, method=lv.Lobatto(8))
+    assert march["bob"].position[-1][2] == pytest.approx(there["bob.z"], abs=1e-9)
+    assert 0.1 < c < 3
+
+
+def test_a_march_has_no_unknowns() -> None:
+    with pytest.raises(lv.InputError, match="unknown-march|conditions"):
+        lv.solve(pendulum(lv.unknown(0.4)), 2)
