@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 
@@ -11,7 +12,7 @@ import livens as lv
 G = 9.81
 
 
-def pendulum(damping: object = 0.0, length: float = 1.0) -> lv.Model:
+def pendulum(damping: Any = 0.0, length: float = 1.0) -> lv.Model:
     """A point on a massless rod, level at the start."""
     m = lv.Model(gravity=(0, 0, -G))
     m.add_body("bob", lv.point(mass=1), position=(length, 0, 0))
