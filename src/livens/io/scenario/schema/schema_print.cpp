@@ -213,17 +213,8 @@ end = "5*2*pi*sqrt(2*L/(3*g))"
 ## Unknown numbers
 
 Between conditions at both ends of time (`[start.known]`, `[end.known]`) a number of the model, a parameter or
-the end of time can be unknown: `{ unknown = 0.3, low = 0 }` in place of the number says a guess and, if need
-be, bounds.
-
-```toml
-[[load]]
-name = "friction"
-type = "spring"
-joint = "pivot"
-stiffness = 0
-damping = { unknown = 0.3, low = 0 }
-```
+the end of time can be unknown: `{ unknown = 0.3, low = 0 }` in place of the number, as in
+`damping = { unknown = 0.3, low = 0 }` of a load, says a guess and, if need be, bounds.
 
 - There must be as many more conditions as unknown numbers. For the family lobatto, with `elements`.
 - Guess and bounds are numbers, strings with units, or expressions, as everywhere. Whole numbers and words
