@@ -47,3 +47,14 @@ def test_damping_is_found_and_a_march_confirms_it() -> None:
 def test_a_march_has_no_unknowns() -> None:
     with pytest.raises(lv.InputError, match="unknown-march|conditions"):
         lv.solve(pendulum(lv.unknown(0.4)), 2)
+
+
+@pytest.mark.parametrize("degree", [2, 3])
+def test_the_error_is_told_where_the_duration_is_found(degree: int) -> None:
+    """Two solutions have two durations: their elements are compared. Held against a fine march."""
+    begin, there = {"bob.y": 0, "bob.z": 0, "bob.vy": 0, "bob.vz": 0}, {"bob.z": -math.sqrt(3) / 2}
+    sol = lv.solve(pendulum(0.4), lv.unknown(2.0, low=0.1), elements=20, method=lv.Lobatto(degree), start=begin, end=there)
+    fine = lv.solve(pendulum(0.4), sol.unknowns["time.end"], accuracy=1e-12)
+    true = abs(fine["bob"].position[-1] - sol["bob"].position[-1]).max()
+    assert true > 1e-9
+    assert true / 10 < sol.error < 100 * true

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -89,6 +90,9 @@ void ErrorMeter::compare(const Motion& finer, int first, int last)
                                  : Side::middle);
     }
     for (auto end = missing.rbegin(); end != missing.rend(); ++end) fill(*end);   // the one behind is known
+    if (!missing.empty() && missing.back() == last)   // nothing is known of how the other one ends
+        estimate_.position[static_cast<std::size_t>(last * estimate_.n_bodies)] =
+            std::numeric_limits<double>::infinity();
     estimate_.find_largest(motion_.mesh);
 }
 
