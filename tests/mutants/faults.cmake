@@ -1582,8 +1582,8 @@ livens_mutant(NAME rounding_forgets_a_factor
 # Of many marches nobody asks which is the nearest.
 livens_mutant(NAME any_march_is_the_nearest
               FILE spacetime/guess.cpp
-              OLD [[all.push_back({march, factor, missing(model, march, far, given)});]]
-              NEW [[all.push_back({march, factor, 1.0});]]
+              OLD [[all.push_back({factor, missing(model, march_with(factor), far, given)});]]
+              NEW [[all.push_back({factor, 1.0});]]
               TESTS_OF unit_spacetime
               MUST_FAIL Guess.FromManySizesOfRatesArrivesNearest)
 

@@ -214,17 +214,18 @@ std::vector<GuessFromEnds> nearest_marches(const Model& model, const Ends& ends,
     if (!is_moving(near))
         near = with_rates(near, is_moving(far) ? far : guess_between(ends.start, ends.end)(near.t));
     if (!is_moving(near)) return {};
-    struct Arrival {
-        Guess march;
+    struct Arrival {   // without its march: all of them would be much memory
         double factor = 1, off = 0;
+    };
+    const auto march_with = [&](double factor) {
+        State begin = near;
+        for (Matrix34& V : begin.V) V = factor * V;
+        return march_from(model, begin, mesh, from_start);
     };
     std::vector<Arrival> all;
     for (int i = 0; i <= n; ++i) {
         const double factor = smallest * std::pow(largest / smallest, static_cast<double>(i) / n);
-        State begin = near;
-        for (Matrix34& V : begin.V) V = factor * V;
-        const Guess march = march_from(model, begin, mesh, from_start);
-        all.push_back({march, factor, missing(model, march, far, given)});
+        all.push_back({factor, missing(model, march_with(factor), far, given)});
     }
     std::vector<Arrival> nearest;   // nearer than those beside them
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -234,10 +235,12 @@ std::vector<GuessFromEnds> nearest_marches(const Model& model, const Ends& ends,
     }
     std::ranges::stable_sort(nearest, {}, &Arrival::off);
     std::vector<GuessFromEnds> guesses;
-    for (const Arrival& one : nearest)
-        if (std::ssize(guesses) < most)
-            guesses.push_back({knows_positions(given) ? bent(one.march, near.t, far) : one.march, from_start,
-                               to_text(one.factor, 3)});
+    for (const Arrival& one : nearest) {
+        if (std::ssize(guesses) == most) break;
+        const Guess march = march_with(one.factor);
+        guesses.push_back(
+            {knows_positions(given) ? bent(march, near.t, far) : march, from_start, to_text(one.factor, 3)});
+    }
     return guesses;
 }
 
