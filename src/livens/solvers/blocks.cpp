@@ -11,6 +11,8 @@
 #include <string>
 #include <utility>
 
+#include "livens/solvers/patience.h"
+
 namespace livens::inline solvers_internal {
 
 namespace {
@@ -81,7 +83,10 @@ void BlockMatrix::resize(const BlockStructure& structure)
     running_sums(structure.n_unknowns, first_unknown_);
     storage_.resize(elements_.size());
     // assign() keeps the memory of an element whose size has not grown: marches refill one matrix for ever.
-    for (int e = 0; e < n_elements(); ++e) storage(e).assign(entries(n_rows(e), n_columns(e)), 0.0);
+    for (int e = 0; e < n_elements(); ++e) {
+        Patience::ask();
+        storage(e).assign(entries(n_rows(e), n_columns(e)), 0.0);
+    }
     n_border_ = structure.n_border;
     border_.resize(elements_.size());
     for (int e = 0; e < n_elements(); ++e) border_storage(e).assign(entries(n_rows(e), n_border_), 0.0);
@@ -138,6 +143,7 @@ void for_each_entry(const BlockStructure& structure, const BlockMatrix& matrix, 
     running_sums(structure.n_rows, first_row);
     running_sums(structure.n_unknowns, first_unknown);
     for (int e = 0; e < structure.n_elements(); ++e) {
+        Patience::ask();
         const auto node = static_cast<std::size_t>(structure.elements[static_cast<std::size_t>(e)][0]);
         const double* value = matrix.storage(e).data();
         for (int i = 0; i < matrix.n_rows(e); ++i)
@@ -166,6 +172,7 @@ void add_up(SparseMatrix& A)
     std::vector<std::pair<int, double>> column;
     int n = 0, begin = 0;
     for (int j = 0; j < A.size; ++j) {
+        Patience::ask();
         const int end = A.column_starts[j + 1];
         column.clear();
         for (int k = begin; k < end; ++k) column.emplace_back(A.rows[k], A.values[k]);

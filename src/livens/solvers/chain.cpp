@@ -45,13 +45,26 @@ void ChainSolver::analyse(const BlockStructure& structure)
     running_sums(structure.n_unknowns, first_unknown_);
     structure_ = structure;
     n_carried_ = structure.n_closing > 0 ? structure.n_unknowns.front() : 0;
+    try {
+        take_room();
+    } catch (...) {   // memory ended, or who waits: half a room is none
+        structure_.reset();
+        throw;
+    }
+}
+
+void ChainSolver::take_room()
+{
     links_.clear();
-    links_.resize(structure.elements.size());
-    for (int e = 0; e < n_links(); ++e) shape(e);
-    const int n = n_links() == 0 ? 0 : n_carried_ + structure.n_unknowns.back() + structure.n_border;
+    links_.resize(structure_->elements.size());
+    for (int e = 0; e < n_links(); ++e) {
+        Patience::ask();
+        shape(e);
+    }
+    const int n = n_links() == 0 ? 0 : n_carried_ + structure_->n_unknowns.back() + structure_->n_border;
     closing_.resize(n, n, 0);
-    matrix_.resize(structure);
-    work_.right_side.assign(static_cast<std::size_t>(size_of(structure)), 0.0);
+    matrix_.resize(*structure_);
+    work_.right_side.assign(static_cast<std::size_t>(size_of(*structure_)), 0.0);
 }
 
 void ChainSolver::shape(int e)

@@ -103,7 +103,10 @@ public:
         running_sums(structure.n_rows, first_row_);
         running_sums(structure.n_unknowns, first_unknown_);
         pieces_.resize(structure.elements.size());
-        for (int e = 0; e < structure.n_elements(); ++e) shape(structure, e);
+        for (int e = 0; e < structure.n_elements(); ++e) {
+            Patience::ask();
+            shape(structure, e);
+        }
         structure_ = structure;
     }
 

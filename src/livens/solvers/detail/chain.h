@@ -43,6 +43,7 @@ private:
     int row(int node) const { return first_row_[static_cast<std::size_t>(node)]; }
     int border() const { return structure_->n_border; }
     const Panel& front(int e) const { return e == 0 ? links_[0].inside : links_[e].merged; }
+    void take_room();
     void shape(int e);
     void fill_inside(int e);
     void fill_merged(int e);

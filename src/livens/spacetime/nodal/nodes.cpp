@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "livens/dynamics/instant/instant.h"
 #include "livens/dynamics/rows/twist.h"
@@ -214,8 +216,12 @@ void Nodes::fix(int A, const InstantState& state)
 void Nodes::begin_constraining()
 {
     if (bases_.empty()) {
-        bases_.resize(known_.size());
-        for (ConstraintBasis& basis : bases_) basis.resize(tables_, false);
+        std::vector<ConstraintBasis> bases(known_.size());
+        for (ConstraintBasis& basis : bases) {
+            Patience::ask();
+            basis.resize(tables_, false);
+        }
+        bases_ = std::move(bases);
     }
     if (has_start_ || known_[0] == nullptr) return;
     has_start_ = true;

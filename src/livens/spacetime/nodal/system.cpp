@@ -37,11 +37,14 @@ void NodalSystem::open(const WindowLayout& layout, const InstantState* first, co
 
 void NodalSystem::choose_elimination()
 {
-    if (rule_.degree == 1 && rule_.points == Points::lobatto && layout_.n_elements() == 1 &&
-        layout_.is_march() && tables_.loads.with_tangent.empty())
-        elimination_ = body_elimination(tables_);
-    else
-        elimination_ = on_null_spaces();
+    elimination_ = takes_bodies_apart() ? body_elimination(tables_) : on_null_spaces();
+}
+
+/// One element of degree 1 where loads have no tangent.
+bool NodalSystem::takes_bodies_apart() const
+{
+    return rule_.degree == 1 && rule_.points == Points::lobatto && layout_.n_elements() == 1 &&
+           layout_.is_march() && tables_.loads.with_tangent.empty();
 }
 
 std::unique_ptr<Elimination> NodalSystem::on_null_spaces() const
@@ -295,8 +298,9 @@ void NodalSystem::measure_condition(SolveReport& report, const std::function<boo
         report.notes.push_back("the whole matrix is too large for its condition number; use fewer elements");
         return;
     }
-    elimination_.reset();
-    const std::unique_ptr<Elimination> elimination = on_null_spaces();
+    // What solving had is taken as it is, and not kept: its blocks go.
+    std::unique_ptr<Elimination> elimination = std::move(elimination_);
+    if (elimination == nullptr || takes_bodies_apart()) elimination = on_null_spaces();
     form_all(*elimination);
     elimination->measure_condition(report, goes_on);
 }

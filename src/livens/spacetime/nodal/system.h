@@ -73,6 +73,7 @@ public:
 
 private:
     void choose_elimination();
+    bool takes_bodies_apart() const;
     void form_all(Elimination& elimination);
     std::size_t n_node_numbers() const;
     std::unique_ptr<Elimination> on_null_spaces() const;
