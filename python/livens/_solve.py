@@ -40,7 +40,7 @@ _SPINS = ("angular_velocity", "angular_velocity_body")
 
 def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, elements: int | None = None,
           output: Number | Vector | None = None, breaks: Literal["from_loads", "ignore"] | None = None,
-          method: Method | str | None = None, start: End = None, end: End = None, periodic: bool | None = None,
+          method: Method | str | None = None, start: End = None, end: End = None, periodic: bool | Mapping[str, Any] | None = None,
           guess: Solution | None = None, progress: ProgressArgument = False, strict: bool = False, **options: Unpack[MethodOptions]) -> Solution:
     """Solves the motion of a model.
 
@@ -60,7 +60,8 @@ def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, el
             or single quantities, ``{"pivot.angle": 0}``, as in ``[start.known]``.
         end: What is prescribed at the final time, by default nothing. Two halves must be prescribed in all, or
             twice as many quantities as the joints leave motions free.
-        periodic: Whether the motion ends in the state in which it begins, but for whole turns; time is its period then.
+        periodic: Whether the motion ends in the state in which it begins, but for whole turns; time is its period then, and
+            may be :func:`unknown`. ``{"turn": 0.5, "axis": (0, 0, 1), "at": (0, 0, 0)}``: in that state turned about an axis.
         guess: A motion of the same bodies to begin with, where ``start`` and ``end`` prescribe one half each.
         progress: True for a progress line, or a function.
         strict: Whether to raise :class:`SolveError` with the solution so far instead of issuing a warning.

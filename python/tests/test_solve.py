@@ -160,14 +160,30 @@ def test_periodic_motions() -> None:
     m = lv.Model("driven", gravity=(0, 0, -9.81))
     rod = m.add_body("rod", lv.box(1, 0.05, 0.05, density=1000), position=(0, 0, -0.5), rotation_vector=(0, "90 deg", 0))
     pivot = m.add_revolute("pivot", "world", rod, at=(0, 0, 0), axis=(0, 1, 0))
-    with pytest.raises(lv.InputError, match="any instant"):
+    with pytest.raises(lv.InputError, match="no motion changes its energy"):
         lv.solve(m, 1, elements=24, periodic=True)
+    free = lv.solve(m, lv.unknown(1.5), elements=16, method=lv.Lobatto(8), periodic=True,
+                    start={"pivot.angle": "90 deg", "pivot.angle_rate": 0})
+    inertia, k = (1 + 0.05**2) / 12 + 0.25, 7.416298709205487   # 4 K(1/2)
+    assert free.success and free.unknowns["time.end"] == pytest.approx(k * np.sqrt(inertia / (9.81 * 0.5)), abs=1e-12)
     m.add_actuator("motor", pivot, inputs={"w": "pivot.angle_rate"}, expression="5*sin(2*pi*t) - 3*w")
     sol = lv.solve(m, 1, accuracy=1e-9, periodic=True)
     assert sol.success
     np.testing.assert_allclose(sol["rod"].velocity[0], sol["rod"].velocity[-1], atol=1e-8)
     later = lv.solve(m, 20, accuracy=1e-10)
     np.testing.assert_allclose(later["rod"].position[-1], sol["rod"].position[0], atol=1e-7)
+
+
+def test_periodic_but_for_a_turn() -> None:
+    m = lv.Model("string", gravity=(0, 0, -9.81))
+    ball = m.add_body("ball", lv.point(mass=1), position=(np.sqrt(0.75), 0, -0.5), velocity=(0, 1.2, 0))
+    m.add_rod("string", "world", ball)
+    known = {"ball.z": -0.5, "ball.y": 0, "ball.vz": 0, "ball.vy": 1.2}
+    sol = lv.solve(m, lv.unknown(1.18), elements=16, method=lv.Lobatto(8), periodic={"turn": lv.unknown(3.3)}, start=known)
+    assert sol.success and sol.unknowns["time.end"] == pytest.approx(1.078197607767349, abs=1e-12)
+    assert sol.unknowns["time.periodic.turn"] == pytest.approx(3.615084340317049, abs=1e-12)
+    with pytest.raises(lv.InputError, match="not alike after a turn"):
+        lv.solve(m, lv.unknown(1.18), elements=16, periodic={"turn": 3.3, "axis": (1, 0, 0)}, start=known)
 
 
 def test_what_is_not_good_is_told(pendulum: lv.Model) -> None:

@@ -119,11 +119,13 @@ std::string code_of(const Model& model, const livens::Problem& problem, double p
     return "none";
 }
 
-/// What nothing drives may begin its period at any instant.
-TEST(Periodic, MotionsOfWhatNothingDrivesAreRefused)
+/// What nothing drives may begin its period at any instant, and is of any size where energy is kept.
+TEST(Periodic, MotionsOfWhatNothingDrivesAreRefusedWithoutMore)
 {
     for (const Model& model : {two_bricks(), four_bar(), driven(1.3, 0, 0), free_box()})
-        EXPECT_EQ(code_of(model, periodic(model.start()), 1.3), "periodic-free");
+        EXPECT_EQ(code_of(model, periodic(model.start()), 1.3), "conditions-too-few");
+    const Model damped = driven(1.3, 0);
+    EXPECT_EQ(code_of(damped, periodic(damped.start()), 1.3), "periodic-free");
     livens::Problem more = periodic(hanging(driven(1.3, 3)));
     more.conditions.components = {
         {state_quantities(driven(1.3, 3), "pivot.angle").at(0), 0, Condition::At::start}};

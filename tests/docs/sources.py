@@ -37,6 +37,7 @@ TIES = [
     ("Where elements lose less than $«10^{-4}»$ of the error together", f"{TIME}/accuracy/between_ends.cpp", r"double nothing = ([^;]+);"),
     ("differences with steps of $«10^{-3}»$ lengths or rad", f"{TIME}/march/end_point.cpp", r"step_of_places = ([^;]+);"),
     ("is compared with what was stated, to $«10^{-8}»$ of its size", f"{TIME}/march/components.h", r"met_component = ([^;]+);"),
+    ("is zero to $«10^{-8}»$ of its two parts", f"{TIME}/march/conserved.cpp", r"unchanged = ([^;]+);"),
     ("are functions of four forms, up to «3.05» rad", f"{BODIES}/joint_coordinates.cpp", r"least_angle = ([^;]+);"),
     ("Where $\\cos^2\\varphi_2 < «10^{-4}»$ none of them", f"{BODIES}/joint_coordinates.cpp", r"least_square = ([^;]+);"),
     ("that are within a factor of $«10^4»$", f"{BODIES}/rotors.cpp", r"widest_ratio = ([^;]+);"),

@@ -1633,7 +1633,55 @@ livens_mutant(NAME all_is_driven
               OLD [[if (F != first) return true;]]
               NEW [[return true;]]
               TESTS_OF convergence
-              MUST_FAIL Periodic.MotionsOfWhatNothingDrivesAreRefused)
+              MUST_FAIL Periodic.MotionsOfWhatNothingDrivesAreRefusedWithoutMore)
+
+# The end of a motion is compared as it stands, not turned back.
+livens_mutant(NAME turns_are_not_taken_back
+              FILE multibody/state_quantities.cpp
+              OLD [[const Turn back = quantity.before->back();]]
+              NEW [[const Turn back{0};]]
+              TESTS_OF unit_io
+              MUST_FAIL FreePeriodic.SphericalPendulumsComeBackTurned)
+
+# What a load takes away is taken for kept.
+livens_mutant(NAME all_is_conserved
+              FILE spacetime/march/conserved.cpp
+              OLD [[if (!std::ranges::all_of(places, is_kept)) continue;]]
+              NEW [[if (places.empty()) continue;]]
+              TESTS_OF unit_io
+              MUST_FAIL FreePeriodic.LimitCyclesNeedOneConditionAlone)
+
+# A kept quantity that follows from others asks for a condition.
+livens_mutant(NAME dependent_quantities_are_kept
+              FILE spacetime/march/conserved.cpp
+              OLD [[if (!std::ranges::any_of(places, is_new)) kept.pop_back();]]
+              NEW [[if (places.empty()) kept.pop_back();]]
+              TESTS_OF unit_io
+              MUST_FAIL FreePeriodic.PendulumsHaveTheirPeriods)
+
+# The turn need not be a symmetry.
+livens_mutant(NAME any_turn_is_a_symmetry
+              FILE spacetime/march/conserved.cpp
+              OLD [[if (!(off <= unchanged * size) || !(bent <= unchanged * most)) return false;]]
+              NEW [[if (!(off <= unchanged * size)) return false;]]
+              TESTS_OF unit_io
+              MUST_FAIL FreePeriodic.WhatDoesNotDetermineThemIsRefused)
+
+# A motion is unfolded by a direction that its other conditions reach as well.
+livens_mutant(NAME unfolded_along_what_is_known
+              FILE spacetime/march/numbered.cpp
+              OLD [[one.value += unfolded[c] * ends_.unfolding[c][i - n];]]
+              NEW [[one.value += 0 * unfolded[c] * ends_.unfolding[c][i - n];]]
+              TESTS_OF unit_io
+              MUST_FAIL FreePeriodic.PendulumsHaveTheirPeriods)
+
+# Bodies at rest count as a periodic motion.
+livens_mutant(NAME rest_is_periodic
+              FILE spacetime/other_motions.cpp
+              OLD [[if (!ends.is_free_periodic) return false;]]
+              NEW [[if (ends.is_free_periodic || !ends.is_free_periodic) return false;]]
+              TESTS_OF unit_io
+              MUST_FAIL FreePeriodic.BodiesAtRestAreNone)
 
 # Turns are conditions of periodic motions.
 livens_mutant(NAME periods_count_turns

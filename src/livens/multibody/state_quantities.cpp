@@ -4,6 +4,7 @@
 #include "livens/multibody/state_quantities.h"
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -142,7 +143,35 @@ std::string list_of(const std::vector<StateQuantity>& all)
     return list;
 }
 
+double value_here(const StateQuantity& quantity, Bodies stated, Bodies X, Bodies V)
+{
+    if (quantity.function) return quantity.function(X, V);
+    if (quantity.body >= 0) {
+        const auto b = static_cast<std::size_t>(quantity.body);
+        return angular_velocity(X[b], V[b])[quantity.axis];
+    }
+    const JointCoordinate& q = quantity.coordinate.coordinate;
+    return quantity.derivative == 1 ? coordinate_rate(q, X, V)
+                                    : quantity.coordinate.at_stated + coordinate_change(q, stated, X);
+}
+
 }   // namespace
+
+Matrix34 turned_rate(const AxisTurn& by, const Matrix34& V)
+{
+    const Matrix3 K = cross_matrix((1 / norm(by.axis)) * by.axis);
+    const double half = std::sin(0.5 * by.angle);   // 1 - cos without cancellation
+    return V + (std::sin(by.angle) * K + 2 * half * half * (K * K)) * V;
+}
+
+Matrix34 turned(const AxisTurn& by, const Matrix34& X)
+{
+    Matrix34 from_axis = X;
+    from_axis.set_column(0, X.column(0) - by.at);
+    Matrix34 after = turned_rate(by, from_axis);
+    after.set_column(0, by.at + after.column(0));
+    return after;
+}
 
 std::vector<StateQuantity> state_quantities(const Model& model, const std::string& name)
 {
@@ -181,14 +210,12 @@ std::vector<StateQuantity> state_quantities(const Model& model, const std::strin
 double value_of(const StateQuantity& quantity, std::span<const Matrix34> stated, std::span<const Matrix34> X,
                 std::span<const Matrix34> V)
 {
-    if (quantity.function) return quantity.function(X, V);
-    if (quantity.body >= 0) {
-        const auto b = static_cast<std::size_t>(quantity.body);
-        return angular_velocity(X[b], V[b])[quantity.axis];
-    }
-    const JointCoordinate& q = quantity.coordinate.coordinate;
-    return quantity.derivative == 1 ? coordinate_rate(q, X, V)
-                                    : quantity.coordinate.at_stated + coordinate_change(q, stated, X);
+    if (!quantity.before) return value_here(quantity, stated, X, V);
+    const AxisTurn back = quantity.before->back();
+    std::vector<Matrix34> X_before, V_before;
+    for (const Matrix34& x : X) X_before.push_back(turned(back, x));
+    for (const Matrix34& v : V) V_before.push_back(turned_rate(back, v));
+    return value_here(quantity, stated, X_before, V_before);
 }
 
 }   // namespace livens

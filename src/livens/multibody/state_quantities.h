@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,19 @@
 namespace [[gnu::visibility("default")]] livens {
 
 class Model;
+
+/// A turn about an axis of the world.
+struct AxisTurn {
+    double angle = 0;   ///< rad, right-handed
+    Vector3 axis{0, 0, 1};
+    Vector3 at{};   ///< a point on it, m
+
+    AxisTurn back() const { return {-angle, axis, at}; }
+};
+
+/// X of a body after the turn, and V.
+Matrix34 turned(const AxisTurn& by, const Matrix34& X);
+Matrix34 turned_rate(const AxisTurn& by, const Matrix34& V);
 
 /// A smooth function of X and V: a coordinate or its rate, or a component of a body's angular velocity.
 struct StateQuantity {
@@ -24,6 +38,8 @@ struct StateQuantity {
     /// Neither: a speed or an energy, which see X and V.
     std::function<double(std::span<const Matrix34> X, std::span<const Matrix34> V)> function{};
     double mass = 0;   ///< kg, of an energy; 0: a speed
+    /// What it is once this turn of all bodies is taken back.
+    std::optional<AxisTurn> before{};
 
     bool is_energy() const { return mass > 0; }
     bool is_rate() const { return derivative == 1 || body >= 0 || function; }

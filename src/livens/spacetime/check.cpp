@@ -173,6 +173,9 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
     if (!std::holds_alternative<Lobatto>(method) && !std::holds_alternative<AutomaticFamily>(method))
         refuse("method.family", "the method " + name_of(method),
                "momenta at both ends are unknowns of lobatto alone", "use lobatto");
+    if (given.turn && !(norm(given.turn->axis) > 0))
+        throw InputError(
+            {"axis-zero", "time.periodic", "the axis of the turn must not be zero", "0, 0, 0", "", "", ""});
     if (model.has_events())
         refuse("start.known", "a mechanism whose joints or drives act for a part of the time",
                "its motion is solved phase by phase, from a state", "give the state at the start");
@@ -189,18 +192,16 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
 void check_unknowns(const Problem& problem, const Time& time, const SolveOptions& options)
 {
     const Conditions& given = problem.conditions;
-    const bool is_whole =
-        given.is_periodic || given.at_start != Known::nothing || given.at_end != Known::nothing;
+    const bool is_whole = given.at_start != Known::nothing || given.at_end != Known::nothing;
     const auto refuse = [&](bool is_wrong, const char* path, const char* what, const char* help) {
-        if (is_wrong && !problem.unknowns.is_empty() && !given.components.empty())
+        if (is_wrong && !problem.unknowns.is_empty() && given.has_components())
             throw InputError({"conditions-method", path,
                               std::string(what) + " is not solved for together with unknown numbers", "", "",
                               "", help});
     };
     refuse(std::holds_alternative<Span>(time), "time.accuracy", "a motion to an accuracy",
            "give elements instead of the accuracy");
-    refuse(is_whole, given.is_periodic ? "time.periodic" : "start.given",
-           "a periodic motion, or one with places of all bodies at an end,",
+    refuse(is_whole, "start.given", "a motion with places of all bodies at an end",
            "give its conditions by component");
     refuse(options.roots > 1, "method.roots", "more than one motion", "leave roots out");
     for (const UnknownNumber& number : problem.unknowns.numbers) {
@@ -216,7 +217,7 @@ void check_unknowns(const Problem& problem, const Time& time, const SolveOptions
             throw InputError({"unknown-guess", path, named + " is guessed outside of its bounds",
                               to_text(number.guess), to_text(number.low) + " to " + to_text(number.high), "",
                               "guess a number between the bounds, or widen them"});
-        if (problem.conditions.components.empty())
+        if (!given.has_components())
             throw InputError({"unknown-march", path, named + " stands where nothing decides it", "", "",
                               "conditions by component at both ends of time decide unknown numbers; a march "
                               "from a state has none to spare",

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -45,6 +46,14 @@ struct Condition {
     double value = 0;
     At at = At::start;
     bool forgets_turns = false;   ///< alike at both ends but for whole turns
+    std::optional<AxisTurn> turn{};   ///< of all bodies, which is taken back before the end is compared
+
+    StateQuantity at_end() const
+    {
+        StateQuantity there = quantity;
+        there.before = turn;
+        return there;
+    }
 };
 
 /// Conditions at the ends of time, for all bodies alike. Two halves must be known: the state at one end, or
@@ -60,8 +69,10 @@ struct Conditions {
     Known at_end = Known::nothing;
     std::vector<Condition> components{};
     /// The state at the end is that at the start, but for whole turns: twice as many quantities as the joints
-    /// leave motions free are alike at both ends, beside other components.
+    /// leave motions free are alike at both ends, beside other components. Where nothing depends on time
+    /// these are needed: as many as there are unknown numbers and quantities that every motion keeps.
     bool is_periodic = false;
+    std::optional<AxisTurn> turn{};   ///< of a periodic motion that ends as it began once this is taken back
 
     /// By component, or periodic: then the end states are guesses.
     bool has_components() const { return is_periodic || !components.empty(); }
@@ -85,6 +96,7 @@ struct Rebuilt {
     std::shared_ptr<const Model> model;
     std::vector<Condition> components;   ///< of this model, in the order of the others
     double start = 0, end = 0;           ///< s
+    double turn = 0;                     ///< rad, of Conditions::turn
 };
 
 /// As many more conditions by component decide them. Bodies, rows and loads are the same for all values.
@@ -101,6 +113,7 @@ struct UnknownNumbers {
 struct FoundNumbers {
     std::vector<double> values{};
     Rebuilt rebuilt{};
+    std::vector<double> unfolded{};   ///< 0 where what every motion keeps is kept, see Ends::unfolding
 };
 
 struct Problem {

@@ -93,6 +93,7 @@ Problem with_found(const Problem& problem, const Solution& solution)
     Problem found = problem;
     found.prepared = nullptr;
     found.conditions.components = solution.numbers.rebuilt.components;
+    if (found.conditions.turn) found.conditions.turn->angle = solution.numbers.rebuilt.turn;
     for (std::size_t i = 0; i < solution.numbers.values.size(); ++i)
         found.unknowns.numbers[i].guess = solution.numbers.values[i];
     return with_prepared(found);

@@ -24,6 +24,7 @@
 #include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/mixed/window.h"
 #include "livens/spacetime/nodal/unknowns_window.h"
+#include "livens/spacetime/other_motions.h"
 #include "livens/spacetime/unseen_number.h"
 #include "livens/stepping/stepping.h"
 
@@ -252,31 +253,6 @@ double refuse_undetermined(Window& window, ConditionNumbersOfLast& last, SolveRe
     return found.moved;
 }
 
-/// Of momenta at a place that is not known, solving compares the part that joints leave to choose: a motion
-/// may meet that and not the rest. Then others are looked for; where there is none, the first one is told.
-std::unique_ptr<Window> find_met(const Model& model, const Ends& ends, std::unique_ptr<Window> window,
-                                 const std::function<std::unique_ptr<Window>(SolveReport&)>& next,
-                                 SolveReport& report)
-{
-    constexpr int most = 8;
-    const auto is_met = [&](Window& of) {
-        const Motion* motion = of.monitor().so_far();
-        return motion == nullptr || unmet(model, ends, *motion, {}).empty();
-    };
-    if (!report.converged() || !(knows_momenta(ends.at_start) || knows_momenta(ends.at_end)) ||
-        is_met(*window))
-        return window;
-    for (int i = 0; i < most; ++i) {
-        SolveReport other;
-        std::unique_ptr<Window> found = next(other);
-        if (!other.converged()) break;
-        if (!is_met(*found)) continue;
-        report = std::move(other);
-        return found;
-    }
-    return window;
-}
-
 /// The equations of a march as those of one window, at its motion: of all elements, or of radau the last one.
 void measure_at_solution(const ModelTables& tables, const Motion& motion, const Ends& ends,
                          const ElementRule& rule, SolveReport& report, const std::function<bool()>& goes_on)
@@ -360,6 +336,13 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     if (!report.converged() && report.status != SolveStatus::cancelled)
         solution.cannot_begin = why_unseen(numbered);
     finish(tables, *window, ends, method, options.condition, last, solution);
+    if (report.converged() && is_at_rest(model, ends, solution.motion)) {
+        report.status = SolveStatus::suspect;
+        report.message =
+            "the bodies stay at rest, which is a periodic motion of any period; try: a start that "
+            "is nearer to the motion (places and velocities of bodies), or its amplitude among the "
+            "conditions at the start";
+    }
     return solution;
 }
 

@@ -207,7 +207,7 @@ TEST(KnownComponents, AreThoseOfPeriodicMotions)
         const ScenarioResult refused = read(text);
         return refused.diagnostics.size() == 1 ? refused.diagnostics[0].code : shown(refused);
     };
-    EXPECT_EQ(code(periodic("periodic = true", "")), "periodic-free");
+    EXPECT_EQ(code(periodic("periodic = true", "")), "conditions-too-few");
     EXPECT_EQ(code(periodic("periodic = true", driven + "\n[start.known]\n\"pivot.angle\" = 0\n")),
               "conditions-too-many");
     EXPECT_EQ(code(periodic("periodic = true", driven + "\n[method]\nfamily = \"radau\"\n")),

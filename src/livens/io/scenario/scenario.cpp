@@ -121,7 +121,8 @@ public:
             throw InputError({first.code, "", first.message, "", "", first.note, first.help});
         }
         return {std::make_shared<const Model>(std::move(assembly.builder().model())),
-                scenario.conditions.components, start_of(scenario.time), end_of(scenario.time)};
+                scenario.conditions.components, start_of(scenario.time), end_of(scenario.time),
+                scenario.conditions.turn ? scenario.conditions.turn->angle : 0};
     }
 
 private:

@@ -44,7 +44,7 @@ std::string another_period(const Model& model, const Problem& problem, const Sol
     constexpr double same = 1e-6, rounding = 1e-12;
     const Motion& motion = solution.motion;
     const bool is_whole = solution.report.converged() && motion.n_elements() > 0;
-    if (!problem.conditions.is_periodic || !is_whole) return "";
+    if (!problem.conditions.is_periodic || problem.conditions.turn || !is_whole) return "";
     const double period = motion.end() - motion.start();
     Problem next{{motion.at_end(motion.n_elements())}};
     TimeMesh mesh = motion.mesh;

@@ -24,10 +24,10 @@ std::string in_words(const Condition& condition)
     return name + " at the " + word_of(condition.at);
 }
 
-std::vector<const StateQuantity*> quantities_of(const std::vector<Condition>& conditions)
+std::vector<StateQuantity> quantities_at(const std::vector<Condition>& conditions, bool last)
 {
-    std::vector<const StateQuantity*> all;
-    for (const Condition& condition : conditions) all.push_back(&condition.quantity);
+    std::vector<StateQuantity> all;
+    for (const Condition& one : conditions) all.push_back(last ? one.at_end() : one.quantity);
     return all;
 }
 
@@ -62,8 +62,9 @@ std::vector<double> values_in(const Model& model, const Ends& ends,
     for (const Condition& one : ends.components) {
         const StateQuantity& q = one.quantity;
         const auto raw = [&](const State& state) { return value_of(q, stated, state.X, state.V); };
-        double first = raw(states.front()), last = raw(states.back());
-        if (q.counts_turns()) {
+        double first = raw(states.front()),
+               last = value_of(one.at_end(), stated, states.back().X, states.back().V);
+        if (q.counts_turns() && !one.turn) {
             last = first = turned_to(first, start_of_turns(ends, q));
             for (const State& state : states) last = turned_to(raw(state), last);
         }

@@ -11,6 +11,7 @@
 #include "livens/solvers/dense.h"
 #include "livens/solvers/factors.h"
 #include "livens/spacetime/march/condition_rows.h"
+#include "livens/spacetime/march/conserved.h"
 #include "livens/spacetime/march/end_point.h"
 #include "livens/spacetime/march/numbered.h"
 
@@ -56,11 +57,28 @@ public:
     }
 
     /// Quantities that are alike at both ends if the states are.
-    std::vector<Condition> alike() const
+    std::vector<Condition> alike(const std::optional<AxisTurn>& turn) const
     {
         std::vector<Condition> all;
-        for (const StateQuantity& q : candidates()) all.push_back({q, 0, Condition::At::both, true});
+        for (const StateQuantity& q : candidates()) all.push_back({q, 0, Condition::At::both, true, turn});
         return clearest(all, 2 * tables_.freedoms());
+    }
+
+    /// Whether bodies that are turned about this axis move as they did, turned.
+    bool is_symmetric_about(const AxisTurn& turn) const
+    {
+        return spacetime_internal::is_symmetric_about(tables_, starts_, turn);
+    }
+
+    /// What every motion keeps, with how conditions on quantities that are alike are unfolded by it.
+    void unfold(const std::optional<AxisTurn>& turn, const std::vector<Condition>& alike, Ends& ends) const
+    {
+        const std::vector<StateQuantity> kept = conserved_quantities(tables_, starts_, duration_, turn);
+        ends.unfolding = unfolding(tables_, start_, alike, kept, duration_);
+        // at rest nothing changes the energy to first order
+        if (ends.unfolding.empty())
+            ends.unfolding = unfolding(tables_, starts_.front(), alike, kept, duration_);
+        for (std::size_t i = 0; i < ends.unfolding.size(); ++i) ends.conserved.push_back(kept[i].name);
     }
 
     /// Places at an end, or places and rates, as quantities that tell them.
@@ -142,10 +160,13 @@ private:
                     const Condition& one = other.ends.components[i];
                     if (one.at == (is_end ? Condition::At::start : Condition::At::end)) continue;
                     const double sign = is_end || one.at == Condition::At::start ? 1 : -1;
-                    double value = is_placed ? point.value(one.quantity) : std::nan("");
-                    if (one.quantity.counts_turns())   // off by less than half a turn
-                        value = turned_to(value, at.value(ends_.components[i].quantity));
-                    const double stated = one.at == Condition::At::both ? 0 : one.value;
+                    const StateQuantity q = is_end ? one.at_end() : one.quantity,
+                                        q_there = is_end ? ends_.components[i].at_end()
+                                                         : ends_.components[i].quantity;
+                    double value = is_placed ? point.value(q) : std::nan("");
+                    if (q.counts_turns())   // off by less than half a turn
+                        value = turned_to(value, at.value(q_there));
+                    const double stated = one.at == Condition::At::both && !is_end ? 0 : one.value;
                     by_numbers_[place](static_cast<int>(i), j) +=
                         sign * weight * (value - stated) / unit_of(one.quantity, tables_.length, duration_);
                 }
@@ -230,15 +251,19 @@ private:
     {
         std::string why = "the joints leave " + std::to_string(tables_.freedoms()) +
                           " motions free, and each has a place and a rate to be known";
-        if (ends_.n_numbers == 1) why += "; the unknown number takes one more";
-        if (ends_.n_numbers > 1)
-            why += "; the " + std::to_string(ends_.n_numbers) + " unknown numbers take one more each";
+        const int n_unknown = ends_.n_numbers - static_cast<int>(ends_.conserved.size());
+        if (n_unknown == 1) why += "; the unknown number takes one more";
+        if (n_unknown > 1)
+            why += "; the " + std::to_string(n_unknown) + " unknown numbers take one more each";
+        if (ends_.n_alike > 0) why += "; periodicity gives " + std::to_string(ends_.n_alike);
+        for (const std::string& name : ends_.conserved)
+            why += "; no motion changes its " + name + ", so that one more tells which it is";
         return why;
     }
 
     Complaint too_many(int needed, int n) const
     {
-        if (ends_.components.back().forgets_turns)
+        if (ends_.n_alike > 0 && ends_.n_numbers == 0)
             return {"conditions-too-many",
                     "time.periodic",
                     "a periodic motion with a given period takes no other conditions",
@@ -317,20 +342,37 @@ private:
 
 }   // namespace
 
-std::optional<Complaint> make_periodic(const ModelTables& tables, Ends& ends)
+std::optional<Complaint> make_periodic(const ModelTables& tables, const Conditions& given, Ends& ends)
 {
     const Judgement judgement(tables, ends, {});
-    if (!judgement.is_driven())
+    const bool is_driven = judgement.is_driven();
+    if (given.turn && (is_driven || !judgement.is_symmetric_about(*given.turn)))
+        return Complaint{"periodic-turn",
+                         "time.periodic",
+                         "the motion cannot end as it began, turned about this axis",
+                         "",
+                         "",
+                         is_driven
+                             ? "loads or joints depend on time, and a turn of the bodies is no later time"
+                             : "joints, loads or gravity are not alike after a turn about it",
+                         "choose an axis about which all is alike, or give periodic = true"};
+    const std::vector<Condition> alike = judgement.alike(given.turn);
+    ends.is_free_periodic = !is_driven;
+    if (!is_driven) judgement.unfold(given.turn, alike, ends);
+    ends.n_numbers += static_cast<int>(ends.unfolding.size());
+    if (!is_driven && ends.n_numbers == 0)
         return Complaint{
             "periodic-free",
             "time.periodic",
             "a periodic motion is not determined by its period here",
             "",
             "",
-            "nothing depends on time: whatever moves periodically may begin at any instant of its "
-            "period, and of motions that keep their energy there is one of every size",
-            "let a load or a joint depend on time, or give conditions at the start and at the end"};
-    const std::vector<Condition> alike = judgement.alike();
+            "nothing depends on time: whatever moves periodically may begin at any instant of its period, "
+            "and "
+            "loads take or give energy, so that the period is one number and not another",
+            "let the end of time be unknown, as end = { unknown = 2.5 }, and give a condition at the start "
+            "that says when it begins; or let a load or a joint depend on time"};
+    ends.n_alike = alike.size();
     ends.components.insert(ends.components.end(), alike.begin(), alike.end());
     return {};
 }

@@ -19,7 +19,8 @@ constexpr double met_component = 1e-8;
 /// "'tip.x' at the end".
 std::string in_words(const Condition& condition);
 
-std::vector<const StateQuantity*> quantities_of(const std::vector<Condition>& conditions);
+/// What is compared at the start of time, or at the end.
+std::vector<StateQuantity> quantities_at(const std::vector<Condition>& conditions, bool last);
 
 /// A length of the model or a radian, for rates over the duration; of energies that of such a speed.
 double unit_of(const StateQuantity& quantity, double length, double duration);
@@ -37,8 +38,9 @@ std::optional<Complaint> why_undetermined(const ModelTables& tables, const Ends&
 
 /// Of an end at which places, or places and rates, are given: these as components beside the others.
 void make_given(const ModelTables& tables, Ends& ends);
-/// Adds what makes a motion periodic to its conditions; or why its period does not determine it.
-std::optional<Complaint> make_periodic(const ModelTables& tables, Ends& ends);
+/// Adds what makes a motion periodic to its conditions, with what unfolds it; or why that does not determine
+/// it.
+std::optional<Complaint> make_periodic(const ModelTables& tables, const Conditions& given, Ends& ends);
 
 /// A state near a guess that meets what is stated at an end, as far as it comes.
 State settled(const ModelTables& tables, const Ends& ends, Condition::At at, const State& guess);

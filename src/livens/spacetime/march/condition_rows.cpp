@@ -39,10 +39,10 @@ DenseMatrix rows_at(const ModelTables& tables, const std::vector<Condition>& con
     DenseMatrix rows(m, 4 * f + by_numbers.cols);
     for (int j = 0; j < by_numbers.cols; ++j)
         for (int i = 0; i < std::min(m, by_numbers.rows); ++i) rows(i, 4 * f + j) = by_numbers(i, j);
-    const std::vector<const StateQuantity*> quantities = quantities_of(conditions);
     for (const int end : {0, 1}) {
         const EndPoint& point = *points[end];
-        const DenseMatrix D = point.derivatives(quantities, point.basis(), 1 / duration);
+        const DenseMatrix D =
+            point.derivatives(quantities_at(conditions, end == 1), point.basis(), 1 / duration);
         for (int i = 0; i < m; ++i) {
             const Condition& one = conditions[i];
             if (one.at == (end == 0 ? Condition::At::end : Condition::At::start)) continue;

@@ -114,6 +114,18 @@ bool EndPoint::is_known(const StateQuantity& quantity) const
 
 State EndPoint::state() const { return {state_.t, X_, V_}; }
 
+std::vector<Matrix34> EndPoint::accelerations() const
+{
+    std::vector<double> A(state_.X.size());
+    state_.angles = tables_.loads.turns.begin(state());
+    instant_.accelerate(state_, Side::right);
+    tables_.bodies.rates_of(state_.X.data(), state_.acceleration[1].data(), A.data());
+    std::vector<Matrix34> all(X_.size());
+    for (std::size_t b = 0; b < all.size(); ++b)
+        for (std::size_t i = 0; i < 12; ++i) all[b].a[i] = A[12 * b + i] + instant_.centripetal()[12 * b + i];
+    return all;
+}
+
 void EndPoint::free_motion(const ConstraintBasis& basis, int j, double* scaled_twist) const
 {
     std::fill_n(scaled_twist, tables_.n_twists, 0.0);
@@ -162,8 +174,8 @@ void EndPoint::momenta_along(const ConstraintBasis& basis, const double* maps, i
     }
 }
 
-DenseMatrix EndPoint::derivatives(std::span<const StateQuantity* const> quantities,
-                                  const ConstraintBasis& basis, double rate) const
+DenseMatrix EndPoint::derivatives(std::span<const StateQuantity> quantities, const ConstraintBasis& basis,
+                                  double rate) const
 {
     // [f(1) - f(-1)] 8 / 12 - [f(2) - f(-2)] / 12, over the step
     constexpr std::array<std::array<double, 2>, 4> rule{
@@ -182,14 +194,14 @@ DenseMatrix EndPoint::derivatives(std::span<const StateQuantity* const> quantiti
             for (double& value : y) value *= k * h_places;
             const bool is_moved = moved.place_moved(*this, y.data(), momenta_);
             for (int i = 0; i < m; ++i) {
-                double change = moved.value(*quantities[i]) - value(*quantities[i]);
-                if (quantities[i]->counts_turns()) change = turned_to(change, 0);
+                double change = moved.value(quantities[i]) - value(quantities[i]);
+                if (quantities[i].counts_turns()) change = turned_to(change, 0);
                 D(i, j) += is_moved ? weight / h_places * change : std::nan("");
             }
             for (std::size_t i = 0; i < p.size(); ++i) p[i] = momenta_[i] + k * h_rates * along[i];
             moved.place(t(), state_.X.data(), state_.X_low.data(), p);
             for (int i = 0; i < m; ++i)
-                D(i, f + j) += weight / h_rates * (moved.value(*quantities[i]) - value(*quantities[i]));
+                D(i, f + j) += weight / h_rates * (moved.value(quantities[i]) - value(quantities[i]));
         }
     }
     return D;

@@ -33,6 +33,8 @@ public:
     /// Whether it has a value here, see livens::is_known().
     bool is_known(const StateQuantity& quantity) const;
     State state() const;
+    /// X'' of the bodies under their loads.
+    std::vector<Matrix34> accelerations() const;
 
     /// Momenta that scaled free motion j of a basis at these maps has as a velocity.
     void momenta_along(const ConstraintBasis& basis, const double* maps, int j, double* momenta) const;
@@ -43,7 +45,7 @@ public:
     /// d(quantities) by the scaled free motions of a basis here, then by momenta along them: 2 f columns.
     /// Four-point central differences; momenta are held in world axes while the bodies move.
     /// `rate`: per s, of motions that matter.
-    DenseMatrix derivatives(std::span<const StateQuantity* const> quantities, const ConstraintBasis& basis,
+    DenseMatrix derivatives(std::span<const StateQuantity> quantities, const ConstraintBasis& basis,
                             double rate) const;
 
 private:
@@ -53,7 +55,7 @@ private:
 
     const ModelTables& tables_;
     mutable InstantSystem instant_;
-    InstantState state_;
+    mutable InstantState state_;   // accelerations are found in it
     std::vector<double> momenta_;
     std::vector<Matrix34> stated_, X_, V_;
 };

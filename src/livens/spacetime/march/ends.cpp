@@ -56,8 +56,10 @@ std::optional<Complaint> close_guesses(const Model& model, const Problem& proble
     if (end.closed) ends.end = std::move(end.closed->start);
     const ModelTables tables(model, ends.independent);
     make_given(tables, ends);
-    if (problem.conditions.is_periodic)
-        if (std::optional<Complaint> why = make_periodic(tables, ends)) return why;
+    if (problem.conditions.is_periodic) {
+        ends.start = settled(tables, ends, Condition::At::start, ends.start);
+        if (std::optional<Complaint> why = make_periodic(tables, problem.conditions, ends)) return why;
+    }
     if (std::optional<Complaint> why = why_undetermined(tables, ends, problem.unknowns)) return why;
     ends.start = settled(tables, ends, Condition::At::start, ends.start);
     if (ends.is_end_guessed) ends.end = settled(tables, ends, Condition::At::end, ends.end);

@@ -25,7 +25,13 @@ struct Ends {
     /// stated at their end as far as they can. With the values that are led from, if they are.
     std::vector<Condition> components{};
     std::vector<double> led_values{};
-    int n_numbers = 0;   ///< unknown ones, which as many more components decide
+    std::size_t n_alike = 0;   ///< the last of these, of a periodic motion
+    int n_numbers = 0;   ///< unknown ones, which as many more components decide, with those of what unfolds
+    /// A periodic motion keeps its energy, say, so that its last components are not independent: for each
+    /// quantity that it keeps by how much they may miss that it changes, times a number that comes out as 0.
+    std::vector<std::vector<double>> unfolding{};
+    std::vector<std::string> conserved{};   ///< their names
+    bool is_free_periodic = false;          ///< nothing that depends on time sets its period
     /// What of these is a whole state, or its places: then all of it is compared in the end.
     Known whole_at_start = Known::nothing, whole_at_end = Known::nothing;
     bool is_end_guessed = false;   ///< else the state at the end is made of that at the start

@@ -85,6 +85,7 @@ private:
     EventLocator events_;
     std::variant<GivenMesh, AdaptiveElements> partition_;   // in place: many marches are an element long
     Attempt attempt_;
+    bool has_iterate_ = false;   // else nothing proposed where to begin
     RetryCounts troubles_;
     int done_ = 0;      // elements
     double time_ = 0;   // up to which they are solved

@@ -39,25 +39,32 @@ double moved_with(const std::vector<double>& from, double t, const std::vector<d
 
 NumberedProblem::NumberedProblem(const Model& model, const Ends& ends, const TimeMesh& mesh,
                                  const UnknownNumbers& unknowns)
-    : model_(model), ends_(ends), mesh_(mesh), unknowns_(unknowns)
+    : model_(model), ends_(ends), mesh_(mesh), unknowns_(unknowns), numbers_(unknowns.numbers)
 {
+    for (const std::string& name : ends.conserved) numbers_.push_back({"change of " + name});
     if (size() > 0) anchors_ = anchors_of(model, mesh.start(), mesh.end());
 }
 
 std::vector<double> NumberedProblem::guesses() const
 {
     std::vector<double> all;
-    for (const UnknownNumber& number : unknowns_.numbers) all.push_back(number.guess);
+    for (const UnknownNumber& number : numbers_) all.push_back(number.guess);
     return all;
 }
 
 NumberedProblem::Instance NumberedProblem::at(std::span<const double> values) const
 {
-    Instance made{unknowns_.rebuild(values), ends_, mesh_};
+    const auto n = static_cast<std::size_t>(n_stated());
+    Instance made{n > 0 ? unknowns_.rebuild(values.first(n)) : as_it_is(), ends_, mesh_};
     const Rebuilt& rebuilt = made.rebuilt;
     if (!(rebuilt.end > rebuilt.start))
         throw InputError({"time-end", "time.end", "the end of time is not after its start",
                           to_text(rebuilt.end, 6), "> " + to_text(rebuilt.start, 6), "", ""});
+    // any state is the one in which a motion of no length ends
+    if (ends_.n_alike > 0 && rebuilt.end - rebuilt.start < 0.1 * (mesh_.end() - mesh_.start()))
+        throw InputError({"time-end", "time.end", "the period is less than a tenth of its guess",
+                          to_text(rebuilt.end - rebuilt.start, 6), "", "",
+                          "give a better guess of it, or of the state at the start"});
     const std::vector<double> anchors = anchors_of(*rebuilt.model, rebuilt.start, rebuilt.end);
     if (anchors.size() != anchors_.size())
         throw InputError({"unknown-order", "time",
@@ -67,13 +74,39 @@ NumberedProblem::Instance NumberedProblem::at(std::span<const double> values) co
         for (double& t : *instants) t = moved_with(anchors_, t, anchors);
     made.ends.start.t = rebuilt.start;
     made.ends.end.t = rebuilt.end;
-    made.ends.components = rebuilt.components;
+    put_components(rebuilt, values.subspan(n), made.ends.components);
     return made;
+}
+
+Rebuilt NumberedProblem::as_it_is() const
+{
+    const auto n = static_cast<std::ptrdiff_t>(n_given());
+    return {std::shared_ptr<const Model>(std::shared_ptr<const Model>(), &model_),
+            {ends_.components.begin(), ends_.components.begin() + n},
+            mesh_.start(),
+            mesh_.end(),
+            ends_.n_alike > 0 && ends_.components.back().turn ? ends_.components.back().turn->angle : 0};
+}
+
+/// Those of a periodic motion follow, of the same names in this model; none is more off than what unfolds it.
+void NumberedProblem::put_components(const Rebuilt& rebuilt, std::span<const double> unfolded,
+                                     std::vector<Condition>& all) const
+{
+    const std::size_t n = n_given();
+    std::copy(rebuilt.components.begin(), rebuilt.components.end(), all.begin());
+    for (std::size_t i = n; i < all.size(); ++i) {
+        Condition& one = all[i];
+        if (n_stated() > 0) one.quantity = state_quantities(*rebuilt.model, one.quantity.name).front();
+        if (one.turn) one.turn->angle = rebuilt.turn;
+        one.value = 0;
+        for (std::size_t c = 0; c < unfolded.size(); ++c)
+            one.value += unfolded[c] * ends_.unfolding[c][i - n];
+    }
 }
 
 double NumberedProblem::scale(int i) const
 {
-    const UnknownNumber& number = unknowns_.numbers[i];
+    const UnknownNumber& number = numbers_[i];
     if (number.guess != 0) return std::abs(number.guess);
     const double width = number.high - number.low;
     if (std::isfinite(width) && width > 0) return width;
@@ -85,7 +118,7 @@ std::vector<NumberedProblem::Sample> NumberedProblem::samples(int i, double valu
     // the derivative of the polynomial through these: between them, or at the first one
     constexpr std::array<Sample, 4> inside{{{-2, 1.0 / 12}, {-1, -8.0 / 12}, {1, 8.0 / 12}, {2, -1.0 / 12}}};
     constexpr std::array<Sample, 5> aside{{{0, -25.0 / 12}, {1, 4}, {2, -3}, {3, 4.0 / 3}, {4, -0.25}}};
-    const UnknownNumber& number = unknowns_.numbers[i];
+    const UnknownNumber& number = numbers_[i];
     const double size = scale(i), h = difference * std::max(std::abs(value), size);
     const bool is_low = value - 2 * h<number.low, is_high = value + 2 * h> number.high;
     std::vector<Sample> all;

@@ -25,8 +25,10 @@ public:
     /// Throws InputError.
     Instance at(std::span<const double> values) const;
 
-    int size() const { return static_cast<int>(unknowns_.numbers.size()); }
-    const UnknownNumber& operator[](int i) const { return unknowns_.numbers[i]; }
+    int size() const { return static_cast<int>(numbers_.size()); }
+    /// Those of the problem, then those of what unfolds it.
+    const UnknownNumber& operator[](int i) const { return numbers_[i]; }
+    int n_stated() const { return static_cast<int>(unknowns_.numbers.size()); }
     const Model& model() const { return model_; }
     const Ends& ends() const { return ends_; }
     const TimeMesh& mesh() const { return mesh_; }
@@ -41,10 +43,17 @@ public:
     std::vector<Sample> samples(int i, double value) const;
 
 private:
+    Rebuilt as_it_is() const;
+    void put_components(const Rebuilt& rebuilt, std::span<const double> unfolded,
+                        std::vector<Condition>& all) const;
+    /// Components that are given, before those of a periodic motion.
+    std::size_t n_given() const { return ends_.components.size() - ends_.n_alike; }
+
     const Model& model_;
     const Ends& ends_;
     const TimeMesh& mesh_;
     const UnknownNumbers& unknowns_;
+    std::vector<UnknownNumber> numbers_;
     std::vector<double> anchors_;   // instants that go with the numbers: both ends, and jumps of laws
 };
 

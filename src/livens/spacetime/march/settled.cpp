@@ -56,7 +56,7 @@ private:
     std::vector<double> least_step(const EndPoint& point) const
     {
         const int f = tables_.freedoms(), m = static_cast<int>(conditions_.size());
-        DenseMatrix A = point.derivatives(quantities_of(conditions_), point.basis(), 1 / duration_);
+        DenseMatrix A = point.derivatives(quantities_at(conditions_, false), point.basis(), 1 / duration_);
         std::vector<double> x(static_cast<std::size_t>(m)), sizes(static_cast<std::size_t>(2 * f));
         for (int j = 0; j < 2 * f; ++j) {
             sizes[j] = point.size_along(point.basis(), point.maps(), j % f) * (j < f ? 1 : duration_);

@@ -14,7 +14,7 @@ EndConditions::EndConditions(const ModelTables& tables, const Ends& ends)
     : tables_(tables), ends_(ends), points_{EndPoint(tables), EndPoint(tables)},
       missing_(ends.components.size())
 {
-    for (const Condition& condition : ends.components) quantities_.push_back(&condition.quantity);
+    for (const bool last : {false, true}) quantities_[last ? 1 : 0] = quantities_at(ends.components, last);
     for (const Body& body : tables.model->bodies()) stated_.push_back(body.X);
     for (auto* p : {&current_, &kept_})
         for (std::vector<double>& one : *p) one.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
@@ -51,8 +51,8 @@ bool EndConditions::evaluate(const WindowLayout& layout, const Nodes& nodes)
         const Condition& condition = ends_.components[i];
         const StateQuantity& q = condition.quantity;
         const bool at_start = condition.at == Condition::At::start;
-        double found = points_[at_start ? 0 : 1].value(q);
-        if (q.counts_turns() && !at_start) found = angle_at_end(q, layout, nodes);
+        double found = points_[at_start ? 0 : 1].value(quantities_[at_start ? 0 : 1][i]);
+        if (q.counts_turns() && !at_start && !condition.turn) found = angle_at_end(q, layout, nodes);
         if (q.counts_turns() && at_start) found = turned_to(found, ends_.value(i));
         if (condition.at == Condition::At::both) {
             const double first = points_[0].value(q);
@@ -106,7 +106,7 @@ void EndConditions::differentiate(const WindowLayout& layout, const Nodes& nodes
     closing_.assign(static_cast<std::size_t>(m) * 4 * static_cast<std::size_t>(f), 0.0);
     for (const int end : {0, 1}) {
         const ConstraintBasis& basis = nodes.basis(end == 0 ? 0 : layout.n_nodes() - 1);
-        const DenseMatrix D = points_[end].derivatives(quantities_, basis, 1 / duration_);
+        const DenseMatrix D = points_[end].derivatives(quantities_[end], basis, 1 / duration_);
         for (int i = 0; i < m; ++i) {
             const Condition::At at = ends_.components[i].at;
             if (at == (end == 0 ? Condition::At::end : Condition::At::start)) continue;

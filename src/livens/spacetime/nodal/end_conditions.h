@@ -69,7 +69,7 @@ private:
 
     const ModelTables& tables_;
     const Ends& ends_;
-    std::vector<const StateQuantity*> quantities_;
+    std::array<std::vector<StateQuantity>, 2> quantities_;   // at the start, at the end
     std::vector<Matrix34> stated_;
     std::array<EndPoint, 2> points_;
     std::array<std::vector<double>, 2> current_, kept_;

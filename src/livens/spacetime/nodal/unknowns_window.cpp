@@ -25,7 +25,9 @@ UnknownsWindow::UnknownsWindow(const NumberedProblem& problem, const std::vector
                                const ElementRule& rule, bool look_at_laws, FoundNumbers& found)
     : Window(static_cast<ElementMonitor&>(*this)), problem_(problem), begin_(begin), rule_(rule),
       look_at_laws_(look_at_laws), found_(found)
-{}
+{
+    begin_.resize(static_cast<std::size_t>(problem.size()), 0.0);   // nothing is unfolded yet
+}
 
 UnknownsWindow::Shared UnknownsWindow::make(const std::vector<double>& values)
 {
@@ -135,7 +137,10 @@ double UnknownsWindow::size_of(std::span<const double> dx) const
 AcceptedElements UnknownsWindow::close(const AcceptanceCriteria& criteria, SolveReport& report)
 {
     const AcceptedElements closed = now_->window.close(criteria, report);
-    found_ = {now_->values, now_->of.rebuilt};
+    const auto n_stated = problem_.n_stated();
+    found_.values.assign(now_->values.begin(), now_->values.begin() + n_stated);
+    found_.unfolded.assign(now_->values.begin() + n_stated, now_->values.end());
+    if (n_stated > 0) found_.rebuilt = now_->of.rebuilt;
     return closed;
 }
 

@@ -15,7 +15,8 @@ namespace livens::inline spacetime_internal {
 /// differences of rows of rebuilt models, with nodes that are pulled onto the joints of these.
 class UnknownsWindow final : public Window, private ElementMonitor, private NewtonProblem {
 public:
-    /// References must outlive it; `begin`: values to begin with. What is found goes into `found`.
+    /// References must outlive it; `begin`: values to begin with, of stated numbers at least. What is found
+    /// goes into `found`.
     UnknownsWindow(const NumberedProblem& problem, const std::vector<double>& begin, const ElementRule& rule,
                    bool look_at_laws, FoundNumbers& found);
 

@@ -167,13 +167,25 @@ Table end_table()
             {given("nothing", "As in `[start]`, for the values in `[body.end]`."), known_key("end")}};
 }
 
+namespace {
+
+void read_periodic(Builder& builder, const Section& time, Conditions& boundary)
+{
+    builder.remember("time.periodic", time.place("periodic"));
+    const Section* const turned = only_section(time, "periodic");
+    boundary.is_periodic = turned != nullptr || (time.has("periodic") && time.truth("periodic"));
+    if (turned == nullptr) return;
+    boundary.turn = AxisTurn{turned->number("turn"), turned->vector("axis"), turned->vector("at")};
+}
+
+}   // namespace
+
 void read_boundary(Builder& builder, Conditions& boundary)
 {
     const Section* const start = only_section(builder.run(), "start");
     const Section* const end = only_section(builder.run(), "end");
     const Section* const time = only_section(builder.run(), "time");
-    boundary.is_periodic = time != nullptr && time->has("periodic") && time->truth("periodic");
-    if (time != nullptr) builder.remember("time.periodic", time->place("periodic"));
+    if (time != nullptr) read_periodic(builder, *time, boundary);
     boundary.at_start = start != nullptr ? start->pick<Known>("given") : Known::state;
     boundary.at_end = end != nullptr ? end->pick<Known>("given") : Known::nothing;
     if (start != nullptr) read_known(builder, *start, Condition::At::start, boundary);

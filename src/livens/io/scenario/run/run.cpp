@@ -24,6 +24,19 @@ void write_components(JsonWriter& json, const std::vector<Condition>& components
     json.end_object();
 }
 
+void write_periodic(JsonWriter& json, const Conditions& conditions)
+{
+    if (!conditions.is_periodic) return;
+    if (!conditions.turn) {
+        json.member("periodic", true);
+        return;
+    }
+    const AxisTurn& turn = *conditions.turn;
+    json.key("periodic").begin_object().member("turn", turn.angle);
+    json.member("axis", std::span<const double>(turn.axis.a));
+    json.member("at", std::span<const double>(turn.at.a)).end_object();
+}
+
 }   // namespace
 
 }   // namespace livens::inline io_internal
@@ -66,7 +79,7 @@ std::string resolved_run(const Builder& builder, const Scenario& scenario)
     else
         json.value(output->numbers.front());
     json.member("breaks", time.text("breaks"));
-    if (scenario.conditions.is_periodic) json.member("periodic", true);
+    write_periodic(json, scenario.conditions);
     json.end_object();
     json.key("method").begin_object();
     write_method(json, scenario.method);

@@ -40,13 +40,22 @@ Table time_table()
              "`elements` nor `knots` of `[method]` is given.",
              "", "1e-6"}
              .within({0, 0.1, true}),
-         Key{"periodic", types::truth,
+         Key{"periodic", types::truth_or_table,
              "Whether the motion ends in the state in which it begins, but for whole turns: a periodic "
-             "motion, "
-             "of which `end` - `start` is the period, or some of them. The bodies as they are placed, and "
-             "their velocities, are a first guess. Something must depend on time, and have this period. For "
-             "the family lobatto.",
-             "", "false"}}};
+             "motion, of which `end` - `start` is the period, or some of them. A table: it ends in that "
+             "state "
+             "turned about an axis. The bodies as they are placed, and their velocities, are a first guess. "
+             "Where something depends on time it must have this period. Else `end` may be unknown, and "
+             "`[start.known]` has as many conditions as numbers are unknown, and one more for each of "
+             "energy, "
+             "momenta and angular momenta that no motion changes. For the family lobatto.",
+             "", "false"}
+             .holding({"periodic of [time]",
+                       "",
+                       {Key{"turn", types::number, "Angle by which the end is turned, right-handed.", "rad"}
+                            .needed(),
+                        Key{"axis", types::vector3, "Axis of the turn.", "", "[0, 0, 1]"},
+                        Key{"at", types::vector3, "A point on the axis.", "m", "[0, 0, 0]"}}})}};
 }
 
 }   // namespace

@@ -46,6 +46,7 @@ struct KeyType {
 namespace types {
 inline constexpr KeyType flag{"true", Form::flag};
 inline constexpr KeyType truth{"true or false", Form::truth};
+inline constexpr KeyType truth_or_table{"true or false or a table", Form::truth, 0, Form::table};
 inline constexpr KeyType integer{"a whole number", Form::integer};
 inline constexpr KeyType integer_or_choice{"a whole number", Form::integer, 0, Form::choice};
 inline constexpr KeyType number{"a number", Form::number};
