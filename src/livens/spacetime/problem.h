@@ -85,6 +85,8 @@ struct Rebuilt {
     std::shared_ptr<const Model> model;
     std::vector<Condition> components;   ///< of this model, in the order of the others
     double start = 0, end = 0;           ///< s
+    /// At the start, where it is known as a whole; without bodies it is that of the problem.
+    State state{};
 };
 
 /// As many more conditions by component decide them. Bodies, rows and loads are the same for all values.
