@@ -1706,3 +1706,27 @@ livens_mutant(NAME energy_of_weight
               NEW [[kinetic_of(body, V[at]) + dot(weight, X[at])]]
               TESTS_OF convergence
               MUST_FAIL Components.AreSpeedsAndEnergies)
+
+# What joints before an event take off momenta there is forgotten behind it.
+livens_mutant(NAME momenta_over_events_do_not_turn
+              FILE spacetime/nodal/phases_condensed.cpp
+              OLD [[momenta[i] += weight / h *]]
+              NEW [[momenta[i] += 0 * weight / h *]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL PhaseEquations.HaveAnExactTangent)
+
+# Switches of joints stay where they are guessed.
+livens_mutant(NAME elements_do_not_follow_releases
+              FILE spacetime/march/numbered.cpp
+              OLD [[t = moved_with(anchors_.instants, t, anchors.instants)]]
+              NEW [[t = anchors_.events.empty() ? moved_with(anchors_.instants, t, anchors.instants) : t]]
+              TESTS_OF convergence
+              MUST_FAIL Releases.InstantThatHitsATargetIsFound)
+
+# Joints that begin where bodies are elsewhere are taken for what holds them.
+livens_mutant(NAME impacts_between_ends
+              FILE spacetime/solve_mesh.cpp
+              OLD [[if (!is_met(]]
+              NEW [[if (false && !is_met(]]
+              TESTS_OF convergence
+              MUST_FAIL PhasesBetweenEnds.AJointThatBeginsMustFindItsBodies)

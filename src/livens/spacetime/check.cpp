@@ -176,9 +176,6 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
     if (given.turn && !(norm(given.turn->axis) > 0))
         throw InputError(
             {"axis-zero", "time.periodic", "the axis of the turn must not be zero", "0, 0, 0", "", "", ""});
-    if (model.has_events())
-        refuse("start.known", "a mechanism whose joints or drives act for a part of the time",
-               "its motion is solved phase by phase, from a state", "give the state at the start");
     for (const Condition& one : given.components)
         if (!std::isfinite(one.value))
             throw InputError({"not-finite", "start.known[" + one.quantity.name + "]",
@@ -192,7 +189,7 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
 void check_unknowns(const Problem& problem, const Time& time, const SolveOptions& options)
 {
     const Conditions& given = problem.conditions;
-    const bool is_whole = given.at_start != Known::nothing || given.at_end != Known::nothing;
+    const bool is_whole = given.at_start == Known::positions || given.at_end != Known::nothing;
     const auto refuse = [&](bool is_wrong, const char* path, const char* what, const char* help) {
         if (is_wrong && !problem.unknowns.is_empty() && given.has_components())
             throw InputError({"conditions-method", path,
@@ -202,7 +199,7 @@ void check_unknowns(const Problem& problem, const Time& time, const SolveOptions
     refuse(std::holds_alternative<Span>(time), "time.accuracy", "a motion to an accuracy",
            "give elements instead of the accuracy");
     refuse(is_whole, "start.given", "a motion with places of all bodies at an end",
-           "give its conditions by component");
+           "give its conditions by component, or the state at the start");
     refuse(options.roots > 1, "method.roots", "more than one motion", "leave roots out");
     for (const UnknownNumber& number : problem.unknowns.numbers) {
         const std::string path = "unknown[" + number.name + "]", named = "the unknown '" + number.name + "'";
@@ -273,11 +270,11 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
     refuse_rotors(model, problem.conditions, method);
     refuse_special_rows(model, method);
     check_unknowns(problem, time, options);
+    check_events(model, problem, time, method, options);
     if (!problem.conditions.has_components())
         check_conditions(model, problem.conditions, method);
     else
         check_components(model, problem, time, method, options);
-    check_events(model, problem, time, method);
     const auto* mesh = std::get_if<TimeMesh>(&time);
     if (mesh != nullptr && mesh->n_elements() < 1)
         throw InputError(

@@ -14,6 +14,7 @@
 #include "livens/spacetime/curve.h"
 #include "livens/spacetime/march/components.h"
 #include "livens/spacetime/march/windows.h"
+#include "livens/spacetime/nodal/window.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -140,7 +141,7 @@ private:
     {
         if (problem_.size() > 0) {
             const NumberedProblem led(model_, ends, mesh_, problem_.unknowns());
-            UnknownsWindow window(led, numbers_.values, rule_, true, numbers_);
+            UnknownsWindow window(led, numbers_.values, nodal_windows(rule_, true), numbers_);
             return motion_of(window, guess);
         }
         const ModelTables tables(model_, ends.independent);

@@ -17,19 +17,13 @@ using SolvePhase =
 
 /// Throws InputError: `joint-time-method` for methods and conditions that know no events, `joint-time-mesh`
 /// for an event inside an element.
-void check_events(const Model& model, const Problem& problem, const Time& time, const Method& method);
+void check_events(const Model& model, const Problem& problem, const Time& time, const Method& method,
+                  const SolveOptions& options);
 
 /// The motion through all events of a model, with a note for each. Where a joint begins, bodies that are off
 /// by more than SolveOptions::meeting end the motion. An accuracy is that of the whole: phases are solved to
 /// a part of it, and once more to a smaller one until a second solution of the whole is within.
 Solution solve_by_phases(const Model& model, const Problem& problem, const Time& time, const Method& method,
                          const SolveOptions& options, const SolvePhase& solve_phase);
-
-/// How far the joints that begin at an element end find the bodies from where they will hold them: what
-/// closing moves, in lengths and rad, and changes of velocities, by the model's length. Infinite: it fails.
-struct ActivationMismatch {
-    double shift = 0, turn = 0, speed = 0, spin = 0;
-};
-ActivationMismatch activation_mismatch(const Model& model, const Motion& motion, int end);
 
 }   // namespace livens::inline spacetime_internal

@@ -96,7 +96,9 @@ struct Rebuilt {
     std::shared_ptr<const Model> model;
     std::vector<Condition> components;   ///< of this model, in the order of the others
     double start = 0, end = 0;           ///< s
-    double turn = 0;                     ///< rad, of Conditions::turn
+    /// At the start, where it is known as a whole; without bodies it is that of the problem.
+    State state{};
+    double turn = 0;   ///< rad, of Conditions::turn
 };
 
 /// As many more conditions by component decide them. Bodies, rows and loads are the same for all values.

@@ -76,8 +76,9 @@ Solution solve_phase(const Model& model, const Problem& problem, const Time& tim
 Solution solve_all_time(const Model& model, const Problem& problem, const Time& time, const Method& method,
                         const SolveOptions& options)
 {
-    return model.has_events() ? solve_by_phases(model, problem, time, method, options, solve_phase)
-                              : solve_phase(model, problem, time, method, options);
+    return model.has_events() && problem.conditions.has_state()
+               ? solve_by_phases(model, problem, time, method, options, solve_phase)
+               : solve_phase(model, problem, time, method, options);
 }
 
 /// The model that the motion belongs to.

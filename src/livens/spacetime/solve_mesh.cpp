@@ -17,14 +17,13 @@
 #include "livens/dynamics/start/prepared.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/accuracy/turning_springs.h"
-#include "livens/spacetime/guess.h"
-#include "livens/spacetime/guess_of_components.h"
-#include "livens/spacetime/leading.h"
+#include "livens/spacetime/events.h"
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/mixed/window.h"
 #include "livens/spacetime/nodal/unknowns_window.h"
 #include "livens/spacetime/other_motions.h"
+#include "livens/spacetime/proposals.h"
 #include "livens/spacetime/unseen_number.h"
 #include "livens/stepping/stepping.h"
 
@@ -35,9 +34,6 @@ namespace {
 /// Beyond, conditions at both ends do not determine the motion: the share of it that rounding may move. Where
 /// they leave a motion free it is about 1.
 constexpr double undetermined = 1e-4;
-/// Past folds: each may cost some hundred factorisations.
-constexpr int most_curves = 3;
-
 std::unique_ptr<Window> make_window(const ModelTables& tables, const TimeMesh& mesh, const Ends& ends,
                                     const Method& method, bool look_at_laws, const Motion* near)
 {
@@ -48,107 +44,6 @@ std::unique_ptr<Window> make_window(const ModelTables& tables, const TimeMesh& m
     if (!look_at_laws) window->ignore_laws();
     return window;
 }
-
-/// Instants in the direction of solution: the ends of elements first..last - 1, each divided into `pieces`.
-std::vector<double> instants(const TimeMesh& mesh, const Ends& ends, int first, int last, int pieces)
-{
-    std::vector<double> times;
-    for (int e = first; e < last; ++e)
-        for (int i = 0; i < pieces; ++i) times.push_back(mesh.ends[e] + mesh.length(e) * i / pieces);
-    times.push_back(mesh.ends[last]);
-    if (ends.is_backwards()) std::reverse(times.begin(), times.end());
-    return times;
-}
-
-/// Where windows start from, one attempt after the other. From a state: a march of lobatto over the
-/// elements, or more and more pieces of them. Single elements of lobatto and radau have their own guess;
-/// where that leads nowhere they are too long, and are divided.
-class Proposals {
-public:
-    Proposals(const Problem& problem, const NumberedProblem& numbered, const Method& method,
-              const Window& window)
-        : model_(numbered.model()), problem_(problem), numbered_(numbered), mesh_(numbered.mesh()),
-          ends_(numbered.ends()), method_(method), window_(window)
-    {}
-
-    WindowOptions::Proposal operator()(int first, int last, int attempt)
-    {
-        if (!ends_.has_state()) return {between_ends(), false};
-        const State state = window_.at(ends_.is_backwards() ? last : first);
-        const auto* mixed = std::get_if<Mixed>(&method_);
-        if (mixed != nullptr && (attempt > 0 || mixed->first_guess == Mixed::FirstGuess::steady))
-            return {attempt > 0 ? Guess{} : guess_steady(state), false};
-        if (attempt > 2 || (mixed == nullptr && last - first == 1)) return {};
-        // Each attempt marches with elements a quarter as long as the one before.
-        const std::vector<double> times = instants(mesh_, ends_, first, last, 1 << (2 * attempt));
-        MarchGuess march = guess_from_state(model_, state, times, mixed ? mixed->witness().degree : 2);
-        return {std::move(march.motion), march.is_closed};
-    }
-
-    /// How the last guess was found, if it was led.
-    const std::string& told() const { return told_; }
-
-private:
-    /// Plain guesses first, then ends that are led: theory.md, "Finding the motion". What was proposed before
-    /// is not proposed again.
-    Guess between_ends()
-    {
-        const int attempt = n_plain_++;
-        if (attempt == 0 && problem_.guess) return problem_.guess;
-        if (problem_.is_only_guess) return {};
-        if (plain_.empty()) {
-            plain_ = guesses_from_ends(model_, guessed_ends(), guess_mesh());
-            if (problem_.guess) plain_.insert(plain_.begin(), GuessFromEnds{});   // tried before
-        }
-        const int n_plain = static_cast<int>(plain_.size());
-        if (attempt < n_plain) return plain_[attempt].motion;
-        if (!nearest_) nearest_ = nearest_marches(model_, guessed_ends(), guess_mesh());
-        if (attempt < n_plain + static_cast<int>(nearest_->size())) {
-            told_ = "found from the stated or steady rates times " + (*nearest_)[attempt - n_plain].rates +
-                    ", with which a march arrives nearest";
-            return (*nearest_)[attempt - n_plain].motion;
-        }
-        while (true) {
-            const GuessFromEnds march = march_to_lead(model_, guessed_ends(), guess_mesh(), lead_);
-            if (!march.motion) break;
-            lead_ = march.next;
-            const Leading led =
-                lead(numbered_, degree(), march.motion, march.from_start, n_curves_ < most_curves);
-            n_curves_ += led.has_followed ? 1 : 0;
-            if (!led.motion) continue;
-            told_ = in_words(led, march);
-            return led.motion;
-        }
-        return {};
-    }
-
-    int degree() const
-    {
-        const auto* mixed = std::get_if<Mixed>(&method_);
-        return mixed != nullptr ? mixed->witness().degree : rule_of(method_).degree;
-    }
-    GuessMesh guess_mesh() const { return {mesh_.ends, degree()}; }
-
-    const Ends& guessed_ends()
-    {
-        if (!ends_.has_components()) return ends_;
-        if (!guessed_) guessed_ = ends_for_guesses(model_, ends_, mesh_.ends);
-        return *guessed_;
-    }
-
-    const Model& model_;
-    const Problem& problem_;
-    const NumberedProblem& numbered_;
-    const TimeMesh& mesh_;
-    const Ends& ends_;
-    const Method& method_;
-    const Window& window_;
-    std::optional<Ends> guessed_;   // of conditions by component
-    std::vector<GuessFromEnds> plain_;
-    std::optional<std::vector<GuessFromEnds>> nearest_;   // made where plain ones fail
-    int n_plain_ = 0, lead_ = 0, n_curves_ = 0;   // guesses, marches that were led, and curves, so far
-    std::string told_;
-};
 
 /// What an iteration leaves has to be far below the errors that two motions are compared for.
 double compared_tolerance(const SolveOptions& options)
@@ -292,42 +187,89 @@ void finish(const ModelTables& tables, Window& window, const Ends& ends, const M
     report.message = "stopped as asked while condition numbers were computed; the motion is complete";
 }
 
-Solution solve_by_windows(const Model& model, const Problem& problem, const TimeMesh& given, const Ends& ends,
-                          const Method& method, const SolveOptions& options)
+/// The window of a problem with unknown numbers, as they are tried.
+UnknownsWindow::Maker maker_of(const ElementRule& rule, bool look_at_laws, const PhasePlan* plan)
+{
+    if (plan == nullptr) return nodal_windows(rule, look_at_laws);
+    return [=](const NumberedProblem::Instance& of) {
+        return std::make_shared<PhasesWindow>(of.rebuilt.model, of.mesh, of.ends, *plan, rule, look_at_laws);
+    };
+}
+
+/// What joints did on the way, or why one that begins would be an impact.
+void look_at_events(const Model& model, const SolveOptions& options, Solution& solution)
+{
+    const Motion& motion = solution.motion;
+    if (!model.has_events() || std::isinf(options.meeting)) return;
+    const std::vector<double> instants = phase_ends(model, motion.mesh);
+    for (std::size_t k = 1; k + 1 < instants.size(); ++k)
+        if (!is_met(model, motion, element_end_at(motion.mesh, instants[k]), motion.end() - motion.start(),
+                    options.meeting, solution.report))
+            return;
+    tell_releases(model, motion, instants, solution.report);
+}
+
+/// The mesh with jumps of loads among the ends that stay where they are, whatever is divided or shifted.
+TimeMesh with_breaks(const Model& model, const TimeMesh& given)
 {
     TimeMesh mesh = given;
     const std::vector<double> breaks = model.load_breaks();
     mesh.required.insert(mesh.required.end(), breaks.begin(), breaks.end());
-    // Ends at jumps of loads stay where they are, whatever is divided or shifted.
     std::ranges::sort(mesh.required);
+    return mesh;
+}
+
+/// Null, and the report says why: no motion gets through all phases.
+const PhasePlan* plan_of(const PlannedPhases& phases, double start, SolveReport& report)
+{
+    if (!phases.plan().phases.empty()) return &phases.plan();
+    report.status = SolveStatus::not_converged;
+    report.failed_at = start;
+    report.message = phases.why();
+    return nullptr;
+}
+
+Solution solve_by_windows(const Model& model, const Problem& problem, const TimeMesh& given, const Ends& ends,
+                          const Method& method, const SolveOptions& options)
+{
+    TimeMesh mesh = with_breaks(model, given);
     const bool is_mixed = std::holds_alternative<Mixed>(method);
-    const ModelTables tables(model, ends.independent, is_mixed, problem.prepared->pattern(model));
     const NumberedProblem numbered(model, ends, mesh, problem.unknowns);
     Solution solution;
-    const auto make = [&]() -> std::unique_ptr<Window> {
-        if (numbered.size() > 0)
-            return std::make_unique<UnknownsWindow>(numbered, numbered.guesses(), rule_of(method),
-                                                    options.look_at_laws, solution.numbers);
-        return make_window(tables, mesh, ends, method, options.look_at_laws, problem.near);
-    };
-    std::unique_ptr<Window> window = make();
     solution.method = method;
     SolveReport& report = solution.report;
     report.notes = ends.notes;
-    WindowOptions w = options_of_mesh(model, ends, method, options);
-    Proposals proposals(problem, numbered, method, *window);
+    std::optional<PlannedPhases> phases;
+    std::optional<Model> at_start;   // with the joints that act there
+    if (is_over_phases(model, problem)) phases.emplace(problem, numbered, rule_of(method).degree);
+    const PhasePlan* const plan = phases ? plan_of(*phases, mesh.start(), report) : nullptr;
+    if (!report.converged()) return solution;
+    const Model& first =
+        phases ? at_start.emplace(acting_at_end(model, mesh.start(), mesh.end(), false)) : model;
+    const ModelTables tables(first, ends.independent, is_mixed, problem.prepared->pattern(first));
+    const auto make = [&]() -> std::unique_ptr<Window> {
+        const bool looks = options.look_at_laws;
+        if (numbered.size() > 0)
+            return std::make_unique<UnknownsWindow>(numbered, numbered.guesses(),
+                                                    maker_of(rule_of(method), looks, plan), solution.numbers);
+        if (plan != nullptr)
+            return std::make_unique<PhasesWindow>(std::make_shared<const Model>(model), mesh, ends, *plan,
+                                                  rule_of(method), looks);
+        return make_window(tables, mesh, ends, method, looks, problem.near);
+    };
+    std::unique_ptr<Window> window = make();
+    WindowOptions w = options_of_mesh(first, ends, method, options);
+    Proposals proposals(problem, numbered, method, *window, phases ? &*phases : nullptr);
     w.propose = std::ref(proposals);
     solve_windows(*window, mesh, w, report);
+    const auto next = [&](SolveReport& other) {
+        other.notes = ends.notes;
+        std::unique_ptr<Window> one = make();
+        solve_windows(*one, mesh, w, other);
+        return one;
+    };
     if (!ends.has_state()) {
-        window = find_met(
-            model, ends, std::move(window),
-            [&](SolveReport& other) {
-                other.notes = ends.notes;
-                std::unique_ptr<Window> one = make();
-                solve_windows(*one, mesh, w, other);
-                return one;
-            },
-            report);
+        window = find_met(model, ends, std::move(window), next, report);
         if (report.converged() && !proposals.told().empty()) report.notes.push_back(proposals.told());
     }
     ConditionNumbersOfLast last(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
@@ -343,6 +285,11 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
             "is nearer to the motion (places and velocities of bodies), or its amplitude among the "
             "conditions at the start";
     }
+    if (phases && !report.converged() && report.status != SolveStatus::cancelled)
+        if (const std::string beginning = begin_in_words(model, mesh.start(), mesh.end()); !beginning.empty())
+            report.message += "; " + beginning + ", where bodies must be, and move, as it holds them";
+    if (phases && report.converged())
+        look_at_events(numbered.size() > 0 ? *solution.numbers.rebuilt.model : model, options, solution);
     return solution;
 }
 

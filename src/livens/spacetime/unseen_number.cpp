@@ -11,6 +11,7 @@
 #include "livens/multibody/body.h"
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/march/components.h"
+#include "livens/spacetime/planned_phases.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -37,6 +38,14 @@ State moving(const NumberedProblem& problem)
     return state;
 }
 
+/// Empty: none begins there.
+Guess march_through(const Model& model, const State& begin, const TimeMesh& mesh)
+{
+    if (model.has_events()) return march_over_phases(model, begin, mesh, 2);
+    const MarchGuess march = guess_from_state(model, begin, mesh.ends);
+    return march.is_closed ? march.motion : Guess{};
+}
+
 /// By how much each condition is missed by a march from a state, of the model that these values make, in the
 /// scales of the conditions; empty: there is no such march.
 std::vector<double> missed_with(const NumberedProblem& problem, const std::vector<double>& values,
@@ -44,11 +53,11 @@ std::vector<double> missed_with(const NumberedProblem& problem, const std::vecto
 {
     const NumberedProblem::Instance made = problem.at(values);
     const Model& model = *made.rebuilt.model;
-    State begin = start;
+    State begin = made.ends.is_start_known ? made.ends.start : start;
     begin.t = made.mesh.start();
-    const MarchGuess march = guess_from_state(model, begin, made.mesh.ends);
-    if (!march.is_closed) return {};
-    std::vector<double> missed = values_in(model, made.ends, march.motion, made.mesh.ends);
+    const Guess march = march_through(model, begin, made.mesh);
+    if (!march) return {};
+    std::vector<double> missed = values_in(model, made.ends, march, made.mesh.ends);
     const double duration = made.mesh.end() - made.mesh.start();
     for (std::size_t i = 0; i < missed.size(); ++i) {
         const Condition& one = made.ends.components[i];

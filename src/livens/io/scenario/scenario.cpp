@@ -120,9 +120,10 @@ public:
             const Diagnostic first = findings.take("").front();
             throw InputError({first.code, "", first.message, "", "", first.note, first.help});
         }
+        State start = assembly.builder().model().start();
         return {std::make_shared<const Model>(std::move(assembly.builder().model())),
                 scenario.conditions.components, start_of(scenario.time), end_of(scenario.time),
-                scenario.conditions.turn ? scenario.conditions.turn->angle : 0};
+                std::move(start), scenario.conditions.turn ? scenario.conditions.turn->angle : 0};
     }
 
 private:

@@ -58,6 +58,7 @@ double response(const ModelTables& tables, const FlowDerivative& flow)
 void find_arrival(const Model& model, const Problem& problem, const SolveOptions& options, Solution& solution)
 {
     const Motion& motion = solution.motion;
+    if (is_over_phases(model, problem)) return;
     try {
         const Ends ends = close_ends(model, problem, motion.start(), motion.end(), options.initial);
         if (ends.has_state()) return;

@@ -61,7 +61,9 @@ void take_smaller(Growth& grown, Growth&& other)
 Growth growth(const Model& model, const Problem& stated, const Method& method, const SolveOptions& options,
               const Motion& motion, double told)
 {
-    const Problem problem = with_prepared(stated);
+    Problem problem = with_prepared(stated);
+    problem.conditions.components.clear();   // of a motion from a known state
+    problem.unknowns = {};
     if (problem.conditions.at_start != Known::state || motion.n_elements() == 0) return {};
     SolveOptions quiet = options;
     quiet.condition = quiet.judge = quiet.end_at_bends = quiet.look_at_laws = false;

@@ -33,7 +33,8 @@ std::vector<std::string> missed_conditions(const Model& model, const Problem& pr
     const auto closed = [&](const Model& acting) {
         return close_ends(acting, problem, start, end, options.initial);
     };
-    const Ends ends = model.has_events() ? closed(acting_at(model, start).model) : closed(model);
+    const bool is_march = model.has_events() && problem.conditions.has_state();
+    const Ends ends = is_march ? closed(acting_at(model, start).model) : closed(model);
     return unmet(model, ends, solution.motion, solution.estimate);
 }
 

@@ -31,23 +31,28 @@ std::string path_of(const Condition& condition)
 /// Judges conditions at a few places; what is dependent at all of them is so by itself.
 class Judgement {
 public:
-    Judgement(const ModelTables& tables, const Ends& ends, const UnknownNumbers& unknowns)
-        : tables_(tables), ends_(ends), duration_(ends.end.t - ends.start.t), start_(tables), end_(tables)
+    Judgement(const ModelTables& tables, const ModelTables& at_end, const Ends& ends,
+              const UnknownNumbers& unknowns)
+        : tables_(tables), at_end_(at_end), ends_(ends), duration_(ends.end.t - ends.start.t), start_(tables),
+          end_(at_end)
     {
         are_placed_ = start_.place(ends.start) && end_.place(ends.end);
         Scatter scatter;
         for (int i = 0; are_placed_ && i < n_places; ++i)
             for (auto* at : {&starts_, &ends_about_}) {
-                at->emplace_back(tables);
-                place_about(at == &starts_ ? start_ : end_, tables, 1 / duration_, scatter, at->back());
+                const bool is_start = at == &starts_;
+                at->emplace_back(is_start ? tables : at_end);
+                place_about(is_start ? start_ : end_, is_start ? tables : at_end, 1 / duration_, scatter,
+                            at->back());
             }
         by_numbers_.assign(n_places, DenseMatrix(static_cast<int>(ends.components.size()), ends.n_numbers));
-        if (are_placed_ && ends.n_numbers > 0) differentiate_by_numbers(unknowns);
+        const bool has_numbers = !unknowns.is_empty() || !ends.unfolding.empty();
+        if (are_placed_ && has_numbers) differentiate_by_numbers(unknowns);
     }
 
     std::optional<Complaint> complaint() const
     {
-        const int needed = 2 * tables_.freedoms() + ends_.n_numbers;
+        const int needed = (ends_.is_start_known ? 0 : 2 * tables_.freedoms()) + ends_.n_numbers;
         const int n = static_cast<int>(ends_.components.size());
         if (!are_placed_) return {};
         if (std::optional<Complaint> why = why_dependent()) return why;
@@ -89,7 +94,8 @@ public:
         for (const StateQuantity& q : candidates())
             if (are_placed_ && (has_rates || !q.is_rate()) && point.is_known(q))
                 all.push_back({q, point.value(q), at});
-        return clearest(all, (has_rates ? 2 : 1) * tables_.freedoms());
+        const int f = (at == Condition::At::end ? at_end_ : tables_).freedoms();
+        return clearest(all, (has_rates ? 2 : 1) * f);
     }
 
     /// Where forces are the same at all times and nothing drives the joints any motion may begin later.
@@ -121,8 +127,9 @@ private:
     {
         std::vector<Remainder> best;
         for (int place = 0; place < n_places; ++place) {
-            const DenseMatrix rows = rows_at(tables_, conditions, {&starts_[place], &ends_about_[place]},
-                                             duration_, by_numbers_[place]);
+            const DenseMatrix rows =
+                rows_at({&tables_, &at_end_}, conditions, {&starts_[place], &ends_about_[place]}, duration_,
+                        by_numbers_[place]);
             if (!all_finite(rows.a)) continue;   // a coordinate has no derivative there, or joints lock
             const std::vector<Remainder> here = remainders(rows);
             if (best.empty()) best = here;
@@ -138,8 +145,10 @@ private:
     void differentiate_by_numbers(const UnknownNumbers& unknowns)
     {
         const TimeMesh mesh{{ends_.start.t, ends_.end.t}};
-        const NumberedProblem problem(*tables_.model, ends_, mesh, unknowns);
-        const std::vector<double> guesses = problem.guesses();
+        std::vector<double> guesses;
+        for (const UnknownNumber& number : unknowns.numbers) guesses.push_back(number.guess);
+        const Rebuilt whole = unknowns.rebuild(guesses);   // with the joints of all of time
+        const NumberedProblem problem(*whole.model, ends_, mesh, unknowns);
         for (int j = 0; j < problem.size(); ++j)
             for (const NumberedProblem::Sample& sample : problem.samples(j, guesses[j])) {
                 std::vector<double> values = guesses;
@@ -150,9 +159,11 @@ private:
 
     void add_sample(const NumberedProblem::Instance& other, int j, double weight)
     {
-        const ModelTables tables(*other.rebuilt.model, ends_.independent);
-        for (int place = 0; place < n_places; ++place)
-            for (const bool is_end : {false, true}) {
+        const Rebuilt& rebuilt = other.rebuilt;
+        for (const bool is_end : {false, true}) {
+            const Model model = acting_at_end(*rebuilt.model, rebuilt.start, rebuilt.end, is_end);
+            const ModelTables tables(model, is_end ? at_end_.independent : tables_.independent);
+            for (int place = 0; place < n_places; ++place) {
                 EndPoint point(tables);
                 const EndPoint& at = (is_end ? ends_about_ : starts_)[place];
                 const bool is_placed = point.place(at.state());
@@ -171,13 +182,14 @@ private:
                         sign * weight * (value - stated) / unit_of(one.quantity, tables_.length, duration_);
                 }
             }
+        }
     }
 
     /// The n of them that tell the states at these very places best.
     std::vector<Condition> clearest(const std::vector<Condition>& all, int n) const
     {
         if (!are_placed_ || all.empty()) return {};
-        DenseMatrix rows = rows_at(tables_, all, {&start_, &end_}, duration_, {});
+        DenseMatrix rows = rows_at({&tables_, &at_end_}, all, {&start_, &end_}, duration_, {});
         for (double& one : rows.a)
             if (!std::isfinite(one)) one = 0;
         const PivotedQR factors(transpose(rows));
@@ -249,12 +261,15 @@ private:
 
     std::string reason() const
     {
-        std::string why = "the joints leave " + std::to_string(tables_.freedoms()) +
-                          " motions free, and each has a place and a rate to be known";
+        std::string why = ends_.is_start_known
+                              ? std::string("the state at the start is known")
+                              : "the joints leave " + std::to_string(tables_.freedoms()) +
+                                    " motions free, and each has a place and a rate to be known";
+        const std::string one = ends_.is_start_known ? "one condition" : "one more";
         const int n_unknown = ends_.n_numbers - static_cast<int>(ends_.conserved.size());
-        if (n_unknown == 1) why += "; the unknown number takes one more";
+        if (n_unknown == 1) why += "; the unknown number takes " + one;
         if (n_unknown > 1)
-            why += "; the " + std::to_string(n_unknown) + " unknown numbers take one more each";
+            why += "; the " + std::to_string(n_unknown) + " unknown numbers take " + one + " each";
         if (ends_.n_alike > 0) why += "; periodicity gives " + std::to_string(ends_.n_alike);
         for (const std::string& name : ends_.conserved)
             why += "; no motion changes its " + name + ", so that one more tells which it is";
@@ -285,7 +300,7 @@ private:
     {
         const std::string free = free_in_words(needed - n);
         return {"conditions-too-few",
-                "start.known",
+                ends_.is_start_known ? "end.known" : "start.known",
                 "too few conditions at the ends of time",
                 std::to_string(n),
                 std::to_string(needed),
@@ -300,8 +315,9 @@ private:
         std::vector<Condition> all = ends_.components;
         const std::size_t n_stated = all.size();
         const auto at_end = std::ranges::count(all, Condition::At::end, &Condition::at);
-        const Condition::At at =
-            2 * at_end < static_cast<std::ptrdiff_t>(n_stated) ? Condition::At::end : Condition::At::start;
+        const Condition::At at = 2 * at_end < static_cast<std::ptrdiff_t>(n_stated) || ends_.is_start_known
+                                     ? Condition::At::end
+                                     : Condition::At::start;
         for (const StateQuantity& q : candidates()) all.push_back({q, 0, at});
         std::string list;
         const std::vector<Remainder> rows = least_dependent(all);
@@ -331,7 +347,7 @@ private:
         return all;
     }
 
-    const ModelTables& tables_;
+    const ModelTables &tables_, &at_end_;   // of the start, where joints differ
     const Ends& ends_;
     double duration_;
     EndPoint start_, end_;
@@ -344,7 +360,7 @@ private:
 
 std::optional<Complaint> make_periodic(const ModelTables& tables, const Conditions& given, Ends& ends)
 {
-    const Judgement judgement(tables, ends, {});
+    const Judgement judgement(tables, tables, ends, {});
     const bool is_driven = judgement.is_driven();
     if (given.turn && (is_driven || !judgement.is_symmetric_about(*given.turn)))
         return Complaint{"periodic-turn",
@@ -377,12 +393,12 @@ std::optional<Complaint> make_periodic(const ModelTables& tables, const Conditio
     return {};
 }
 
-void make_given(const ModelTables& tables, Ends& ends)
+void make_given(const ModelTables& at_start, const ModelTables& at_end, Ends& ends)
 {
-    const Judgement judgement(tables, ends, {});
+    const Judgement judgement(at_start, at_end, ends, {});
     for (const Condition::At at : {Condition::At::start, Condition::At::end}) {
         const Known known = at == Condition::At::start ? ends.at_start : ends.at_end;
-        if (known == Known::nothing) continue;
+        if (known == Known::nothing || (at == Condition::At::start && ends.is_start_known)) continue;
         const std::vector<Condition> all = judgement.of_state(at, known == Known::state);
         ends.components.insert(ends.components.end(), all.begin(), all.end());
     }
@@ -390,10 +406,10 @@ void make_given(const ModelTables& tables, Ends& ends)
     ends.whole_at_end = std::exchange(ends.at_end, Known::nothing);
 }
 
-std::optional<Complaint> why_undetermined(const ModelTables& tables, const Ends& ends,
-                                          const UnknownNumbers& unknowns)
+std::optional<Complaint> why_undetermined(const ModelTables& at_start, const ModelTables& at_end,
+                                          const Ends& ends, const UnknownNumbers& unknowns)
 {
-    return Judgement(tables, ends, unknowns).complaint();
+    return Judgement(at_start, at_end, ends, unknowns).complaint();
 }
 
 }   // namespace livens::inline spacetime_internal

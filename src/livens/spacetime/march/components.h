@@ -33,11 +33,12 @@ double start_of_turns(const Ends& ends, const StateQuantity& quantity);
 /// Why conditions do not determine a motion of these joints, and unknown numbers: they must be twice the free
 /// motions and as many more as there are numbers, and none may follow from others. Judged at places about the
 /// guesses, where no chance makes them dependent.
-std::optional<Complaint> why_undetermined(const ModelTables& tables, const Ends& ends,
-                                          const UnknownNumbers& unknowns);
+std::optional<Complaint> why_undetermined(const ModelTables& at_start, const ModelTables& at_end,
+                                          const Ends& ends, const UnknownNumbers& unknowns);
 
-/// Of an end at which places, or places and rates, are given: these as components beside the others.
-void make_given(const ModelTables& tables, Ends& ends);
+/// Of an end at which places, or places and rates, are given: these as components beside the others; a state
+/// at the start that is known as it stands needs none.
+void make_given(const ModelTables& at_start, const ModelTables& at_end, Ends& ends);
 /// Adds what makes a motion periodic to its conditions, with what unfolds it; or why that does not determine
 /// it.
 std::optional<Complaint> make_periodic(const ModelTables& tables, const Conditions& given, Ends& ends);

@@ -31,26 +31,28 @@ void place_about(const EndPoint& from, const ModelTables& tables, double rate, S
         for (double& value : y) value *= 0.5;
 }
 
-DenseMatrix rows_at(const ModelTables& tables, const std::vector<Condition>& conditions,
+DenseMatrix rows_at(const std::array<const ModelTables*, 2>& tables, const std::vector<Condition>& conditions,
                     const std::array<const EndPoint*, 2>& points, double duration,
                     const DenseMatrix& by_numbers)
 {
-    const int f = tables.freedoms(), m = static_cast<int>(conditions.size());
-    DenseMatrix rows(m, 4 * f + by_numbers.cols);
+    const int m = static_cast<int>(conditions.size()),
+              n = 2 * (tables[0]->freedoms() + tables[1]->freedoms());
+    DenseMatrix rows(m, n + by_numbers.cols);
     for (int j = 0; j < by_numbers.cols; ++j)
-        for (int i = 0; i < std::min(m, by_numbers.rows); ++i) rows(i, 4 * f + j) = by_numbers(i, j);
+        for (int i = 0; i < std::min(m, by_numbers.rows); ++i) rows(i, n + j) = by_numbers(i, j);
     for (const int end : {0, 1}) {
         const EndPoint& point = *points[end];
+        const int f = tables[end]->freedoms(), first = end == 0 ? 0 : 2 * tables[0]->freedoms();
         const DenseMatrix D =
             point.derivatives(quantities_at(conditions, end == 1), point.basis(), 1 / duration);
         for (int i = 0; i < m; ++i) {
             const Condition& one = conditions[i];
             if (one.at == (end == 0 ? Condition::At::end : Condition::At::start)) continue;
-            const double unit = unit_of(one.quantity, tables.length, duration);
+            const double unit = unit_of(one.quantity, tables[end]->length, duration);
             for (int j = 0; j < f; ++j) {
                 const double size = point.size_along(point.basis(), point.maps(), j) * unit;
-                rows(i, end * 2 * f + j) = D(i, j) / size;
-                rows(i, end * 2 * f + f + j) = D(i, f + j) / (size * duration);
+                rows(i, first + j) = D(i, j) / size;
+                rows(i, first + f + j) = D(i, f + j) / (size * duration);
             }
         }
     }

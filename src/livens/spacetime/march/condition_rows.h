@@ -35,7 +35,7 @@ void place_about(const EndPoint& from, const ModelTables& tables, double rate, S
 /// Derivatives of conditions by lengths, radians and rates times the duration along free motions at both
 /// ends, one row each, by their scales: numbers about 1, zero where joints hold a quantity. Columns by
 /// unknown numbers follow, of the first conditions.
-DenseMatrix rows_at(const ModelTables& tables, const std::vector<Condition>& conditions,
+DenseMatrix rows_at(const std::array<const ModelTables*, 2>& tables, const std::vector<Condition>& conditions,
                     const std::array<const EndPoint*, 2>& points, double duration,
                     const DenseMatrix& by_numbers);
 

@@ -142,7 +142,7 @@ std::vector<StateQuantity> conserved_quantities(const ModelTables& tables, const
         std::vector<Condition> rows;
         for (const StateQuantity& one : kept) rows.push_back({one});
         const auto is_new = [&](const EndPoint& at) {
-            const Remainder last = remainders(rows_at(tables, rows, {&at, &at}, duration, {})).back();
+            const Remainder last = remainders(rows_at({&tables, &tables}, rows, {&at, &at}, duration, {})).back();
             return last.norm > dependent * std::max(last.of, 1e-3);
         };
         if (!std::ranges::any_of(places, is_new)) kept.pop_back();
@@ -181,7 +181,7 @@ std::vector<std::vector<double>> unfolding(const ModelTables& tables, const EndP
     std::vector<Condition> rows;
     for (const Condition& one : alike) rows.push_back({one.quantity});
     for (const StateQuantity& one : conserved) rows.push_back({one});
-    const DenseMatrix D = rows_at(tables, rows, {&start, &start}, duration, {});
+    const DenseMatrix D = rows_at({&tables, &tables}, rows, {&start, &start}, duration, {});
     DenseLU lu;
     lu.resize(n);
     for (int i = 0; i < n; ++i)

@@ -5,6 +5,7 @@
 
 #include "livens/dynamics/start/prepared.h"
 #include "livens/dynamics/start/singular.h"
+#include "livens/spacetime/events.h"
 #include "livens/spacetime/march/components.h"
 
 namespace livens::inline spacetime_internal {
@@ -37,12 +38,15 @@ std::optional<Complaint> close_end(const Model& model, State& state, Known known
 
 /// Guesses at both ends, of which that at the start says which rows are independent; a guess at the end that
 /// no place near closes, or that nobody gave, is the one at the start.
-std::optional<Complaint> close_guesses(const Model& model, const Problem& problem, Ends& ends,
+std::optional<Complaint> close_guesses(const Model& whole, const Problem& problem, Ends& ends,
                                        StartPolicy policy)
 {
-    std::optional<Complaint> given = close_end(model, ends.end, ends.at_end, policy, nullptr, ends);
+    const Model model = acting_at_end(whole, ends.start.t, ends.end.t, false),
+                last = acting_at_end(whole, ends.start.t, ends.end.t, true);
+    std::optional<Complaint> given = close_end(last, ends.end, ends.at_end, policy, nullptr, ends);
     if (!given) given = close_end(model, ends.start, ends.at_start, policy, nullptr, ends);
     if (given) return given;
+    ends.is_start_known = is_over_phases(whole, problem) && ends.at_start == Known::state;
     TriedStart start = try_consistent_start(model, ends.start, StartPolicy::project);
     if (!start.closed) return std::move(start.why);
     ends.start = std::move(start.closed->start);
@@ -52,21 +56,46 @@ std::optional<Complaint> close_guesses(const Model& model, const Problem& proble
     ends.is_end_guessed = !ends.end.X.empty();
     if (!ends.is_end_guessed) ends.end = ends.start;
     ends.end.t = t;
-    TriedStart end = try_consistent_start(model, ends.end, StartPolicy::project);
+    TriedStart end = try_consistent_start(last, ends.end, StartPolicy::project);
+    if (!end.closed && whole.has_events()) {
+        ends.end.X = ends.start.X;
+        end = try_consistent_start(last, ends.end, StartPolicy::project);
+        if (!end.closed) return std::move(end.why);
+    }
     if (end.closed) ends.end = std::move(end.closed->start);
-    const ModelTables tables(model, ends.independent);
-    make_given(tables, ends);
+    ends.independent_at_end = whole.has_events() ? end.closed->independent : ends.independent;
+    const ModelTables tables(model, ends.independent), tables_at_end(last, ends.independent_at_end);
+    make_given(tables, tables_at_end, ends);
     if (problem.conditions.is_periodic) {
         ends.start = settled(tables, ends, Condition::At::start, ends.start);
         if (std::optional<Complaint> why = make_periodic(tables, problem.conditions, ends)) return why;
     }
-    if (std::optional<Complaint> why = why_undetermined(tables, ends, problem.unknowns)) return why;
+    if (std::optional<Complaint> why = why_undetermined(tables, tables_at_end, ends, problem.unknowns))
+        return why;
     ends.start = settled(tables, ends, Condition::At::start, ends.start);
-    if (ends.is_end_guessed) ends.end = settled(tables, ends, Condition::At::end, ends.end);
+    if (ends.is_end_guessed) ends.end = settled(tables_at_end, ends, Condition::At::end, ends.end);
     return {};
 }
 
 }   // namespace
+
+bool is_over_phases(const Model& model, const Problem& problem)
+{
+    const Conditions& given = problem.conditions;
+    const bool is_from_state =
+        given.at_start == Known::state && !given.components.empty() && !problem.unknowns.is_empty();
+    return is_from_state || (model.has_events() && !given.has_state());
+}
+
+Model acting_at_end(const Model& model, double start, double end, bool last)
+{
+    if (!model.has_events()) return model;
+    std::vector<double> instants{start};
+    for (const double t : events_inside(model, start, end)) instants.push_back(t);
+    instants.push_back(end);
+    const std::size_t i = last ? instants.size() - 1 : 1;
+    return acting_at(model, 0.5 * (instants[i - 1] + instants[i])).model;
+}
 
 Problem with_prepared(Problem problem)
 {
@@ -88,7 +117,7 @@ TriedEnds try_close_ends(const Model& model, const Problem& problem, double star
     ends.end.t = end;
     ends.components = conditions.components;
     ends.n_numbers = static_cast<int>(problem.unknowns.numbers.size());
-    if (conditions.has_components()) {
+    if (conditions.has_components() || is_over_phases(model, problem)) {
         if (std::optional<Complaint> why = close_guesses(model, problem, ends, policy))
             return {{}, std::move(*why)};
         return {std::move(ends), {}};

@@ -15,7 +15,8 @@ namespace livens::inline spacetime_internal {
 struct Ends {
     Known at_start = Known::state, at_end = Known::nothing;
     State start, end;   ///< V of known positions without momenta, and X of known momenta, are guesses
-    std::vector<int> independent;   ///< rows, chosen where X is known
+    std::vector<int> independent;            ///< rows, chosen where X is known
+    std::vector<int> independent_at_end{};   ///< where other joints act there
     std::vector<int> redundant;
     std::vector<std::string> notes;
     /// Momenta that are known at an end which is led: this share of the way from those of another state.
@@ -35,6 +36,10 @@ struct Ends {
     /// What of these is a whole state, or its places: then all of it is compared in the end.
     Known whole_at_start = Known::nothing, whole_at_end = Known::nothing;
     bool is_end_guessed = false;   ///< else the state at the end is made of that at the start
+    /// The state at the start is known as it stands, beside components at the end that decide numbers alone.
+    bool is_start_known = false;
+    /// Of one phase among others: momenta at both ends are unknown, and what is before it gives the start.
+    bool is_phase = false;
 
     /// What condition i is to be.
     double value(std::size_t i) const
@@ -42,11 +47,18 @@ struct Ends {
         const double from = led_values.empty() ? components[i].value : led_values[i];
         return led_share * components[i].value + (1 - led_share) * from;
     }
-    bool has_components() const { return !components.empty(); }
+    bool has_components() const { return is_phase || !components.empty(); }
     bool has_state() const { return at_start == Known::state || at_end == Known::state; }
     /// Windows follow each other from the end of time.
     bool is_backwards() const { return at_end == Known::state; }
 };
+
+/// Joints act for a part of the time between conditions at both ends, or numbers are to be found from a state
+/// that is known: the motion is solved in phases, all at once.
+bool is_over_phases(const Model& model, const Problem& problem);
+
+/// The model with the joints that act just behind the start of time, or just before its end.
+Model acting_at_end(const Model& model, double start, double end, bool last);
 
 /// The problem, with room for what is found of its model.
 Problem with_prepared(Problem problem);

@@ -16,16 +16,6 @@ namespace {
 
 constexpr double difference = 1e-4;   // of a number or its scale
 
-/// Both ends of time and the instants between them at which laws of loads jump or bend.
-std::vector<double> anchors_of(const Model& model, double start, double end)
-{
-    std::vector<double> all{start};
-    for (const double t : model.load_breaks())
-        if (t > start && t < end) all.push_back(t);
-    all.push_back(end);
-    return all;
-}
-
 /// t, which lies between two of these instants, as far between the same two of others.
 double moved_with(const std::vector<double>& from, double t, const std::vector<double>& to)
 {
@@ -36,6 +26,19 @@ double moved_with(const std::vector<double>& from, double t, const std::vector<d
 }
 
 }   // namespace
+
+NumberedProblem::Anchors NumberedProblem::anchors_of(const Model& model, double start, double end)
+{
+    Anchors all{{start}, {}};
+    const std::vector<double> events = model.events();
+    for (const double t : model.load_breaks()) {
+        if (!(t > start && t < end)) continue;
+        if (std::ranges::binary_search(events, t)) all.events.push_back(all.instants.size());
+        all.instants.push_back(t);
+    }
+    all.instants.push_back(end);
+    return all;
+}
 
 NumberedProblem::NumberedProblem(const Model& model, const Ends& ends, const TimeMesh& mesh,
                                  const UnknownNumbers& unknowns)
@@ -65,15 +68,16 @@ NumberedProblem::Instance NumberedProblem::at(std::span<const double> values) co
         throw InputError({"time-end", "time.end", "the period is less than a tenth of its guess",
                           to_text(rebuilt.end - rebuilt.start, 6), "", "",
                           "give a better guess of it, or of the state at the start"});
-    const std::vector<double> anchors = anchors_of(*rebuilt.model, rebuilt.start, rebuilt.end);
-    if (anchors.size() != anchors_.size())
+    const Anchors anchors = anchors_of(*rebuilt.model, rebuilt.start, rebuilt.end);
+    if (anchors.instants.size() != anchors_.instants.size() || anchors.events != anchors_.events)
         throw InputError({"unknown-order", "time",
-                          "an instant at which a load switches leaves the time, or meets another", "", "",
-                          "elements end there, and their order does not change", ""});
+                          "an instant at which a load or a joint switches leaves the time, or meets another",
+                          "", "", "elements end there, and their order does not change", ""});
     for (auto* instants : {&made.mesh.ends, &made.mesh.required, &made.mesh.bends})
-        for (double& t : *instants) t = moved_with(anchors_, t, anchors);
-    made.ends.start.t = rebuilt.start;
+        for (double& t : *instants) t = moved_with(anchors_.instants, t, anchors.instants);
     made.ends.end.t = rebuilt.end;
+    if (!rebuilt.state.X.empty()) made.ends.start = rebuilt.state;
+    made.ends.start.t = rebuilt.start;
     put_components(rebuilt, values.subspan(n), made.ends.components);
     return made;
 }
@@ -85,6 +89,7 @@ Rebuilt NumberedProblem::as_it_is() const
             {ends_.components.begin(), ends_.components.begin() + n},
             mesh_.start(),
             mesh_.end(),
+            {},
             ends_.n_alike > 0 && ends_.components.back().turn ? ends_.components.back().turn->angle : 0};
 }
 

@@ -54,7 +54,15 @@ private:
     const TimeMesh& mesh_;
     const UnknownNumbers& unknowns_;
     std::vector<UnknownNumber> numbers_;
-    std::vector<double> anchors_;   // instants that go with the numbers: both ends, and jumps of laws
+    /// Both ends of time and the instants between them at which laws of loads jump or bend, or joints begin
+    /// or end to act.
+    struct Anchors {
+        std::vector<double> instants;
+        std::vector<std::size_t> events;   ///< which of them are of joints
+    };
+    static Anchors anchors_of(const Model& model, double start, double end);
+
+    Anchors anchors_;   // instants that go with the numbers
 };
 
 /// The instant at which an element of one mesh is as far as an element of another at t.

@@ -79,7 +79,7 @@ bool ElementEnd::find_first(NodalSystem& system)
     const double weight = layout.weight(system.rule(), 0);
     here.t = layout.times[0];
     if (!layout.X_first) {
-        here.angles = tables_.loads.turns.begin();
+        here.angles = layout.angles;
         tables_.loads.turns.follow(Configurations(system.nodes().X(0)), here.angles);
         std::copy_n(system.nodes().X(0), here.X.size(), here.X.begin());
         std::copy_n(system.nodes().low(0), here.X.size(), here.X_low.begin());

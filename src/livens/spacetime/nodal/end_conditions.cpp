@@ -10,11 +10,83 @@
 
 namespace livens::inline spacetime_internal {
 
-EndConditions::EndConditions(const ModelTables& tables, const Ends& ends)
-    : tables_(tables), ends_(ends), points_{EndPoint(tables), EndPoint(tables)},
-      missing_(ends.components.size())
+MissedConditions::MissedConditions(const ModelTables& tables, const Ends& ends)
+    : tables_(tables), ends_(ends), rows_(ends.components.size())
 {
     for (const bool last : {false, true}) quantities_[last ? 1 : 0] = quantities_at(ends.components, last);
+}
+
+bool MissedConditions::compare(const EndPoint& first, const EndPoint& last, double duration,
+                               const Followed& followed)
+{
+    duration_ = duration;
+    largest_ = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const Condition& condition = ends_.components[i];
+        const StateQuantity& q = condition.quantity;
+        const bool at_start = condition.at == Condition::At::start;
+        double found = (at_start ? first : last).value(quantities_[at_start ? 0 : 1][i]);
+        if (q.counts_turns() && !at_start && !condition.turn) found = followed(q.coordinate, start_of_turns(ends_, q));
+        if (q.counts_turns() && at_start) found = turned_to(found, ends_.value(i));
+        if (condition.at == Condition::At::both) {
+            const double begin = first.value(q);
+            found -= q.counts_turns() ? turned_to(begin, start_of_turns(ends_, q)) : begin;
+            if (condition.forgets_turns && q.counts_turns()) found = turned_to(found, 0);
+        }
+        rows_[i] = ends_.value(i) - found;
+        largest_ = std::max(largest_, std::abs(rows_[i]) / scale(i));
+    }
+    return all_finite(rows_) && are_known(Condition::At::end, first) && are_known(Condition::At::start, last);
+}
+
+/// Coordinates of the conditions at an end, which need not have a value at the other one.
+bool MissedConditions::are_known(Condition::At without, const EndPoint& point) const
+{
+    for (const Condition& one : ends_.components)
+        if (one.at != without && !point.is_known(one.quantity)) return false;
+    return true;
+}
+
+double MissedConditions::scale(std::size_t i) const
+{
+    return scale_of(ends_.components[i], tables_.length, duration_);
+}
+
+std::vector<double> MissedConditions::roundings() const
+{
+    std::vector<double> all;
+    for (std::size_t i = 0; i < rows_.size(); ++i) all.push_back(1e-16 * scale(i));
+    return all;
+}
+
+DenseMatrix MissedConditions::derivatives(bool last, const EndPoint& point,
+                                          const ConstraintBasis& basis) const
+{
+    DenseMatrix D = point.derivatives(quantities_[last ? 1 : 0], basis, 1 / duration_);
+    for (int i = 0; i < D.rows; ++i) {
+        const Condition::At at = ends_.components[i].at;
+        const bool is_there = at != (last ? Condition::At::start : Condition::At::end);
+        const double sign = !is_there ? 0 : at == Condition::At::both && !last ? -1 : 1;
+        for (int j = 0; j < D.cols; ++j) D(i, j) = sign == 0 ? 0 : sign * D(i, j);
+    }
+    return D;
+}
+
+double followed(const NamedCoordinate& coordinate, const std::vector<Matrix34>& stated,
+                const WindowLayout& layout, const Nodes& nodes, double from)
+{
+    double now = from - coordinate.at_stated;
+    for (int A = 0; A < layout.n_nodes(); ++A) {
+        std::vector<Matrix34> X(stated.size());
+        for (std::size_t b = 0; b < X.size(); ++b) std::copy_n(nodes.X(A) + 12 * b, 12, X[b].a);
+        now = turned_to(coordinate_change(coordinate.coordinate, stated, X), now);
+    }
+    return coordinate.at_stated + now;
+}
+
+EndConditions::EndConditions(const ModelTables& tables, const Ends& ends)
+    : tables_(tables), ends_(ends), missed_(tables, ends), points_{EndPoint(tables), EndPoint(tables)}
+{
     for (const Body& body : tables.model->bodies()) stated_.push_back(body.X);
     for (auto* p : {&current_, &kept_})
         for (std::vector<double>& one : *p) one.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
@@ -39,82 +111,38 @@ bool EndConditions::evaluate(const WindowLayout& layout, const Nodes& nodes)
 {
     const int last = layout.n_nodes() - 1, n = layout.n_elements();
     lengths_ = {std::abs(layout.h(0)), std::abs(layout.h(n - 1))};
-    duration_ = std::abs(layout.times[n] - layout.times[0]);
     for (const int end : {0, 1}) {
         const int A = end == 0 ? 0 : last;
         if (!points_[end].place(layout.times[end == 0 ? 0 : n], nodes.X(A), nodes.low(A), current_[end]))
             return false;
         current_[end] = points_[end].momenta();
     }
-    largest_ = 0;
-    for (std::size_t i = 0; i < missing_.size(); ++i) {
-        const Condition& condition = ends_.components[i];
-        const StateQuantity& q = condition.quantity;
-        const bool at_start = condition.at == Condition::At::start;
-        double found = points_[at_start ? 0 : 1].value(quantities_[at_start ? 0 : 1][i]);
-        if (q.counts_turns() && !at_start && !condition.turn) found = angle_at_end(q, layout, nodes);
-        if (q.counts_turns() && at_start) found = turned_to(found, ends_.value(i));
-        if (condition.at == Condition::At::both) {
-            const double first = points_[0].value(q);
-            found -= q.counts_turns() ? turned_to(first, start_of_turns(ends_, q)) : first;
-            if (condition.forgets_turns && q.counts_turns()) found = turned_to(found, 0);
-        }
-        missing_[i] = ends_.value(i) - found;
-        largest_ = std::max(largest_, std::abs(missing_[i]) / scale(i));
-    }
-    return all_finite(missing_) && are_known(Condition::At::end, points_[0]) &&
-           are_known(Condition::At::start, points_[1]);
-}
-
-/// Coordinates of the conditions at an end, which need not have a value at the other one.
-bool EndConditions::are_known(Condition::At without, const EndPoint& point) const
-{
-    for (const Condition& one : ends_.components)
-        if (one.at != without && !point.is_known(one.quantity)) return false;
-    return true;
-}
-
-/// Followed from node to node, from the turn that it has at the start.
-double EndConditions::angle_at_end(const StateQuantity& quantity, const WindowLayout& layout,
-                                   const Nodes& nodes) const
-{
-    const NamedCoordinate& q = quantity.coordinate;
-    double now = start_of_turns(ends_, quantity) - q.at_stated;
-    for (int A = 0; A < layout.n_nodes(); ++A) {
-        std::vector<Matrix34> X(stated_.size());
-        for (std::size_t b = 0; b < X.size(); ++b) std::copy_n(nodes.X(A) + 12 * b, 12, X[b].a);
-        now = turned_to(coordinate_change(q.coordinate, stated_, X), now);
-    }
-    return q.at_stated + now;
-}
-
-double EndConditions::scale(std::size_t i) const
-{
-    return scale_of(ends_.components[i], tables_.length, duration_);
+    return missed_.compare(
+        points_[0], points_[1], std::abs(layout.times[n] - layout.times[0]),
+        [&](const NamedCoordinate& q, double from) { return followed(q, stated_, layout, nodes, from); });
 }
 
 std::vector<double> EndConditions::roundings() const
 {
-    std::vector<double> all;
-    for (std::size_t i = 0; i < missing_.size(); ++i) all.push_back(1e-16 * scale(i));
+    std::vector<double> all = missed_.roundings();
+    if (ends_.is_phase) all.resize(static_cast<std::size_t>(2 * tables_.freedoms()), 0.0);
     return all;
 }
 
 void EndConditions::differentiate(const WindowLayout& layout, const Nodes& nodes)
 {
-    const int f = tables_.freedoms(), m = static_cast<int>(missing_.size());
+    const int f = tables_.freedoms(), m = ends_.is_phase ? 2 * f : static_cast<int>(ends_.components.size());
     closing_.assign(static_cast<std::size_t>(m) * 4 * static_cast<std::size_t>(f), 0.0);
     for (const int end : {0, 1}) {
         const ConstraintBasis& basis = nodes.basis(end == 0 ? 0 : layout.n_nodes() - 1);
-        const DenseMatrix D = points_[end].derivatives(quantities_[end], basis, 1 / duration_);
+        DenseMatrix D(m, 2 * f);
+        if (!ends_.is_phase) D = missed_.derivatives(end == 1, points_[end], basis);
+        for (int i = 0; ends_.is_phase && end == 0 && i < m; ++i) D(i, i) = 1;
         for (int i = 0; i < m; ++i) {
-            const Condition::At at = ends_.components[i].at;
-            if (at == (end == 0 ? Condition::At::end : Condition::At::start)) continue;
-            const double sign = at == Condition::At::both && end == 0 ? -1 : 1;
             double* row = closing_.data() + static_cast<std::ptrdiff_t>(i) * 4 * f;
             for (int j = 0; j < f; ++j) {
-                row[end * f + j] = sign * D(i, j);
-                row[(2 + end) * f + j] = sign * D(i, f + j);
+                row[end * f + j] = D(i, j);
+                row[(2 + end) * f + j] = D(i, f + j);
             }
         }
         along_[end] = DenseMatrix(tables_.n_twists, f);

@@ -17,8 +17,43 @@ namespace livens::inline spacetime_internal {
 class Elimination;
 class Nodes;
 
+/// What conditions by component miss at two ends of time.
+class MissedConditions {
+public:
+    /// References must outlive it.
+    MissedConditions(const ModelTables& tables, const Ends& ends);
+
+    /// An angle at the end, followed from where it is at the start.
+    using Followed = std::function<double(const NamedCoordinate& coordinate, double from)>;
+    /// False: something is not finite, or without a value.
+    bool compare(const EndPoint& first, const EndPoint& last, double duration, const Followed& followed);
+    /// With the opposite sign, as rows.
+    const std::vector<double>& rows() const { return rows_; }
+    /// The largest of them, by its scale.
+    double largest() const { return largest_; }
+    double scale(std::size_t i) const;
+    /// Of the rows that rounding may make.
+    std::vector<double> roundings() const;
+    /// Their derivatives by free motions and momenta along them, f and f, at one end.
+    DenseMatrix derivatives(bool last, const EndPoint& point, const ConstraintBasis& basis) const;
+
+private:
+    bool are_known(Condition::At without, const EndPoint& point) const;
+
+    const ModelTables& tables_;
+    const Ends& ends_;
+    std::array<std::vector<StateQuantity>, 2> quantities_;   // at the start, at the end
+    double duration_ = 0, largest_ = 0;
+    std::vector<double> rows_;
+};
+
+/// An angle as nodes have it, node after node.
+double followed(const NamedCoordinate& coordinate, const std::vector<Matrix34>& stated,
+                const WindowLayout& layout, const Nodes& nodes, double from);
+
 /// Border and closing rows of a window (docs/theory.md, "Conditions by component"). Unknowns are momenta
-/// along the free motions at the first node and at the last one, f each; rows what conditions miss.
+/// along the free motions at the first node and at the last one, f each; rows what conditions miss. Of a
+/// phase among others the rows say that its start is what it is.
 class EndConditions {
 public:
     /// References must outlive it.
@@ -34,6 +69,7 @@ public:
     bool begin(bool last, const State& guess);
     void move(std::span<const double> dp, double damping);
     void keep() { kept_ = current_; }
+    void begin_with(const std::vector<double>& momenta) { current_[0] = momenta; }
     /// What others have kept.
     void adopt(const EndConditions& others) { current_ = kept_ = others.kept_; }
     /// States at both ends, and what conditions miss. False: something is not finite, or without a value.
@@ -41,13 +77,16 @@ public:
     /// Rows of the balances with what the conditions miss behind them, both with the opposite sign.
     std::vector<double> behind(std::vector<double> balances) const
     {
-        balances.insert(balances.end(), missing_.begin(), missing_.end());
+        const std::vector<double>& rows = missed_.rows();
+        balances.insert(balances.end(), rows.begin(), rows.end());
+        if (ends_.is_phase)
+            balances.resize(balances.size() + static_cast<std::size_t>(2 * tables_.freedoms()));
         return balances;
     }
     /// The largest of what they miss, by its scale.
-    double largest() const { return largest_; }
-    /// Of the rows that rounding may make.
+    double largest() const { return missed_.largest(); }
     std::vector<double> roundings() const;
+    const EndPoint& point(bool last) const { return points_[last ? 1 : 0]; }
 
     /// Columns of unknown numbers, for a tangent that is formed in this sink: of balances, then conditions.
     void border_with(std::function<DenseMatrix(Elimination&)> columns) { columns_ = std::move(columns); }
@@ -63,21 +102,15 @@ public:
     double size_of(std::span<const double> dp) const;
 
 private:
-    double angle_at_end(const StateQuantity& quantity, const WindowLayout& layout, const Nodes& nodes) const;
-    double scale(std::size_t i) const;
-    bool are_known(Condition::At without, const EndPoint& point) const;
-
     const ModelTables& tables_;
     const Ends& ends_;
-    std::array<std::vector<StateQuantity>, 2> quantities_;   // at the start, at the end
+    MissedConditions missed_;
     std::vector<Matrix34> stated_;
     std::array<EndPoint, 2> points_;
     std::array<std::vector<double>, 2> current_, kept_;
     std::array<double, 2> lengths_{};   // of the elements at the ends, s
-    double duration_ = 0;
-    std::vector<double> missing_, closing_;
-    std::array<DenseMatrix, 2> along_;   // momenta along free motions
-    double largest_ = 0;
+    std::vector<double> closing_;
+    std::array<DenseMatrix, 2> along_;                   // momenta along free motions
     std::function<DenseMatrix(Elimination&)> columns_;   // or none
 };
 

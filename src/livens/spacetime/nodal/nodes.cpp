@@ -91,6 +91,15 @@ void NodePositions::place_at(int A, const double* X)
     std::fill_n(sets_[current_].low.data() + place(A), size_, 0.0);
 }
 
+bool NodePositions::place_at(int A, const double* X, const double* low)
+{
+    double *own = sets_[current_].X.data() + place(A), *own_low = sets_[current_].low.data() + place(A);
+    if (std::equal(X, X + size_, own) && std::equal(low, low + size_, own_low)) return false;
+    std::copy_n(X, size_, own);
+    std::copy_n(low, size_, own_low);
+    return true;
+}
+
 void NodePositions::place_solved(const double* increments, int width)
 {
     const int p = rule_.degree;

@@ -35,6 +35,8 @@ public:
     double size_of(const double* twist) const;
 
     void place_at(int A, const double* X);
+    /// With the lower parts; false: it is there.
+    bool place_at(int A, const double* X, const double* low);
     /// All nodes of the only element: the first node moved by increments about the centres of mass, in lanes,
     /// of which lane 0 is the end. Only the end gets a lower part.
     void place_solved(const double* increments, int width);

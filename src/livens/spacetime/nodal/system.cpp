@@ -110,6 +110,17 @@ bool NodalSystem::adopt(const NodalSystem& other, bool is_pulled)
     return !is_pulled || (nodes_.constrain(layout_, false) && pull(true));
 }
 
+bool NodalSystem::begin_with(const double* X, const double* low, const std::vector<double>& momenta)
+{
+    conditions_->begin_with(momenta);
+    if (!nodes_.place_at(0, X, low)) return true;
+    const double before = correction_;
+    if (!nodes_.constrain(layout_, in_use_) || !pull(true)) return false;
+    correction_ = std::max(correction_, before);
+    measure();
+    return true;
+}
+
 std::vector<double> NodalSystem::rows_in(Elimination& formed) const
 {
     formed.stand_at(tables_, nodes_);
@@ -134,17 +145,22 @@ void NodalSystem::keep()
 
 void NodalSystem::solve_for(const NodalSystem& other, std::span<double> dx)
 {
+    const std::vector<double>& rows = other.rows_.reduced();
+    if (conditions_ == nullptr)
+        solve_rows(other, rows, dx);
+    else
+        solve_rows(other, other.conditions_->behind(rows), dx);
+}
+
+void NodalSystem::solve_rows(const NodalSystem& other, std::span<const double> rows, std::span<double> dx)
+{
     if (pending_) {   // one node: its violations go into the linear system with the rows
         for (int c = 0; c < tables_.rank; ++c) range_[c] = -nodes_.violations(1)[c];
         nodes_.basis(1).q.solve_R_transposed(range_.data());
     }
     const double* range = pending_ ? range_.data() : nullptr;
-    const NodalRows& rows = other.rows_;
     elimination_->stand_at(other.tables_, other.nodes_);
-    if (conditions_ == nullptr)
-        elimination_->solve(rows.reduced(), range, dx.data());
-    else
-        elimination_->solve(other.conditions_->behind(rows.reduced()), range, dx.data());
+    elimination_->solve(rows, range, dx.data());
     double* twist = dx.data();
     for (int A = 0; A < layout_.n_nodes(); ++A) {
         if (!layout_.is_unknown(A)) continue;
@@ -261,7 +277,7 @@ NewtonProblem::Rows NodalSystem::rows() const
 }
 
 /// Each row has the rounding of its own terms: a motion that decays keeps its digits.
-double NodalSystem::uncertainty(std::vector<double>& twists)
+std::vector<double> NodalSystem::roundings() const
 {
     std::vector<double> roundings(static_cast<std::size_t>(layout_.n_nodes()), 0.0);
     const auto size = static_cast<std::ptrdiff_t>(12 * tables_.bodies.size());
@@ -278,6 +294,12 @@ double NodalSystem::uncertainty(std::vector<double>& twists)
             std::max_element(raw, raw + size, [](double a, double b) { return std::abs(a) < std::abs(b); });
         roundings[A] += 1e-16 * std::abs(*largest);
     }
+    return roundings;
+}
+
+double NodalSystem::uncertainty(std::vector<double>& twists)
+{
+    std::vector<double> roundings = this->roundings();
     if (conditions_ != nullptr)
         for (const double rounding : conditions_->roundings()) roundings.push_back(rounding);
     const double response = elimination_->least_resisted(roundings, twists);

@@ -30,6 +30,8 @@ public:
     /// What a system of the same layout has kept, on another model. `is_pulled`: onto the joints of that. The
     /// layout's states are not known. False: not finite, or too far away.
     bool adopt(const NodalSystem& other, bool is_pulled);
+    /// The first node becomes this place, pulled onto the joints, and its momenta these. False: not finite.
+    bool begin_with(const double* X, const double* low, const std::vector<double>& momenta);
     /// Rows of balances and conditions with the opposite sign, in the null spaces of a sink that has begun.
     std::vector<double> rows_in(Elimination& formed) const;
     /// Placed nodes may lie far from the constraints: pulls until the bases fit the nodes. False: not finite.
@@ -43,6 +45,7 @@ public:
     const NodalRows& balances() const { return rows_; }
     /// Null before settle().
     const Elimination* elimination() const { return elimination_.get(); }
+    Elimination* elimination() { return elimination_.get(); }
     /// Forms the tangent at the current point into another sink, for tests.
     void form_tangent(TangentSink& sink) { tangent_.form(layout_, nodes_, rows_, sink); }
     /// Of the conditions by component, or null.
@@ -63,6 +66,10 @@ public:
     void solve(std::span<double> dx) override { solve_for(*this, dx); }
     /// Increments of another system of the same layout, on another model, by the factors of this one.
     void solve_for(const NodalSystem& other, std::span<double> dx);
+    /// The same for other rows with the opposite sign, conditions behind the balances.
+    void solve_rows(const NodalSystem& other, std::span<const double> rows, std::span<double> dx);
+    /// Of the rows of each node.
+    std::vector<double> roundings() const;
     bool move(std::span<const double> dx, double damping) override;
     void keep() override;
     double size_of(std::span<const double> dx) const override;

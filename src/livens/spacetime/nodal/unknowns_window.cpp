@@ -9,22 +9,35 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/solvers/patience.h"
-#include "livens/spacetime/nodal/elimination.h"
+#include "livens/spacetime/nodal/window.h"
 
 namespace livens::inline spacetime_internal {
 
-UnknownsWindow::Instance::Instance(const NumberedProblem& problem, const std::vector<double>& of_numbers,
-                                   const ElementRule& rule, bool look_at_laws)
-    : values(of_numbers), of(problem.at(values)), tables(*of.rebuilt.model, of.ends.independent),
-      window(tables, of.mesh, of.ends, rule)
+UnknownsWindow::Maker nodal_windows(const ElementRule& rule, bool look_at_laws)
 {
-    if (!look_at_laws) window.ignore_laws();
+    struct Own {
+        Own(const NumberedProblem::Instance& of, const ElementRule& rule)
+            : tables(*of.rebuilt.model, of.ends.independent), window(tables, of.mesh, of.ends, rule)
+        {}
+        ModelTables tables;
+        NodalWindow window;
+    };
+    return [=](const NumberedProblem::Instance& of) -> std::shared_ptr<BorderedWindow> {
+        auto own = std::make_shared<Own>(of, rule);
+        if (!look_at_laws) own->window.ignore_laws();
+        return {own, &own->window};
+    };
 }
 
-UnknownsWindow::UnknownsWindow(const NumberedProblem& problem, const std::vector<double>& begin,
-                               const ElementRule& rule, bool look_at_laws, FoundNumbers& found)
-    : Window(static_cast<ElementMonitor&>(*this)), problem_(problem), begin_(begin), rule_(rule),
-      look_at_laws_(look_at_laws), found_(found)
+UnknownsWindow::Instance::Instance(const NumberedProblem& problem, const std::vector<double>& of_numbers,
+                                   const Maker& maker)
+    : values(of_numbers), of(problem.at(values)), window(maker(of))
+{}
+
+UnknownsWindow::UnknownsWindow(const NumberedProblem& problem, const std::vector<double>& begin, Maker maker,
+                               FoundNumbers& found)
+    : Window(static_cast<ElementMonitor&>(*this)), problem_(problem), begin_(begin), maker_(std::move(maker)),
+      found_(found)
 {
     begin_.resize(static_cast<std::size_t>(problem.size()), 0.0);   // nothing is unfolded yet
 }
@@ -33,9 +46,9 @@ UnknownsWindow::Shared UnknownsWindow::make(const std::vector<double>& values)
 {
     Patience::ask();
     try {
-        auto made = std::make_shared<Instance>(problem_, values, rule_, look_at_laws_);
+        auto made = std::make_shared<Instance>(problem_, values, maker_);
         SolveReport report;
-        if (made->window.open(first_, last_, report)) return made;
+        if (made->window->open(first_, last_, report)) return made;
         why_ = report.message;
     } catch (const InputError& error) {
         why_ = error.complaint().message;
@@ -61,22 +74,21 @@ bool UnknownsWindow::start_from(const Guess& guess)
 {
     SolveReport report;
     if (!guess || !open(first_, last_, report)) return false;
-    return now_->window.start_from(
+    return now_->window->start_from(
         [&](double t) { return guess(carried_to(now_->of.mesh, t, problem_.mesh())); });
 }
 
 bool UnknownsWindow::factorise()
 {
     formed_ = now_;
-    NodalSystem& system = now_->window.equations();
-    system.conditions()->border_with([this](Elimination& formed) { return columns(formed); });
-    return system.factorise();
+    now_->window->border_with([this](Formed formed) { return columns(formed); });
+    return now_->window->factorise();
 }
 
 /// Rows with the opposite sign are what columns have on the other side.
-DenseMatrix UnknownsWindow::columns(Elimination& formed)
+DenseMatrix UnknownsWindow::columns(Formed formed)
 {
-    const std::size_t n = now_->window.equations().rows_in(formed).size();
+    const std::size_t n = now_->window->rows_in(formed).size();
     DenseMatrix all(static_cast<int>(n), problem_.size());
     for (int i = 0; i < problem_.size(); ++i)
         for (const NumberedProblem::Sample& sample : problem_.samples(i, now_->values[i]))
@@ -84,24 +96,20 @@ DenseMatrix UnknownsWindow::columns(Elimination& formed)
     return all;
 }
 
-bool UnknownsWindow::add_sample(int i, const NumberedProblem::Sample& sample, Elimination& formed,
+bool UnknownsWindow::add_sample(int i, const NumberedProblem::Sample& sample, Formed formed,
                                 std::span<double> column)
 {
     std::vector<double> values = now_->values;
     values[i] = sample.value;
     const Shared other = make(values);
     if (other == nullptr) return false;
-    NodalSystem& system = other->window.equations();
-    if (!system.adopt(now_->window.equations(), true) || !system.residual()) return false;
-    const std::vector<double> rows = system.rows_in(formed);
+    if (!other->window->adopt(*now_->window, true) || !other->window->equations().residual()) return false;
+    const std::vector<double> rows = other->window->rows_in(formed);
     for (std::size_t k = 0; k < rows.size(); ++k) column[k] -= sample.weight * rows[k];
     return true;
 }
 
-void UnknownsWindow::solve(std::span<double> dx)
-{
-    formed_->window.equations().solve_for(now_->window.equations(), dx);
-}
+void UnknownsWindow::solve(std::span<double> dx) { formed_->window->solve_for(*now_->window, dx); }
 
 bool UnknownsWindow::move(std::span<const double> dx, double damping)
 {
@@ -114,21 +122,21 @@ bool UnknownsWindow::move(std::span<const double> dx, double damping)
                                problem_[i].high);
     const Shared other = make(values);
     if (other == nullptr) return false;
-    NodalSystem& system = other->window.equations();
-    const bool is_placed = system.adopt(kept_->window.equations(), false) && system.move(dx, damping);
+    const bool is_placed =
+        other->window->adopt(*kept_->window, false) && other->window->equations().move(dx, damping);
     now_ = other;
     return is_placed;
 }
 
 void UnknownsWindow::keep()
 {
-    now_->window.equations().keep();
+    now_->window->equations().keep();
     kept_ = now_;
 }
 
 double UnknownsWindow::size_of(std::span<const double> dx) const
 {
-    double size = now_->window.equations().size_of(dx);
+    double size = now_->window->equations().size_of(dx);
     for (const double number : numbers_in(dx))
         if (!(std::abs(number) <= size) && !std::isnan(size)) size = std::abs(number);
     return size;
@@ -136,7 +144,7 @@ double UnknownsWindow::size_of(std::span<const double> dx) const
 
 AcceptedElements UnknownsWindow::close(const AcceptanceCriteria& criteria, SolveReport& report)
 {
-    const AcceptedElements closed = now_->window.close(criteria, report);
+    const AcceptedElements closed = now_->window->close(criteria, report);
     const auto n_stated = problem_.n_stated();
     found_.values.assign(now_->values.begin(), now_->values.begin() + n_stated);
     found_.unfolded.assign(now_->values.begin() + n_stated, now_->values.end());
@@ -147,7 +155,7 @@ AcceptedElements UnknownsWindow::close(const AcceptanceCriteria& criteria, Solve
 Uncertainty UnknownsWindow::uncertainty()
 {
     if (!factorise()) return {1, "the motion with its unknown numbers", 1};
-    Uncertainty found = now_->window.uncertainty();
+    Uncertainty found = now_->window->uncertainty();
     for (int i = 0; i < problem_.size(); ++i) {
         const double moved = found.numbers.empty() ? 0 : found.numbers[i];
         if (moved <= found.size) continue;
@@ -173,7 +181,7 @@ std::string UnknownsWindow::bounds_reached() const
 
 void UnknownsWindow::describe(SolveReport& report) const
 {
-    if (now_ != nullptr) now_->window.describe(report);
+    if (now_ != nullptr) now_->window->describe(report);
     if (kept_ == nullptr) return;
     const std::string bounds = bounds_reached();
     if (!report.converged()) {

@@ -19,7 +19,7 @@ namespace livens {
 
 NodalWindow::NodalWindow(const ModelTables& tables, const TimeMesh& mesh, const Ends& ends,
                          const ElementRule& rule)
-    : Window(static_cast<ElementMonitor&>(*this)), tables_(tables), ends_(ends),
+    : BorderedWindow(static_cast<ElementMonitor&>(*this)), tables_(tables), ends_(ends),
       conditions_(ends.has_components() ? std::make_unique<EndConditions>(tables, ends) : nullptr),
       system_(tables, rule), series_(tables, system_.rule()), kernel_(tables, system_.rule()),
       end_(tables, kernel_.serves() && ends.has_state()), checks_(tables, system_.rule()),
@@ -27,6 +27,24 @@ NodalWindow::NodalWindow(const ModelTables& tables, const TimeMesh& mesh, const 
 {
     record_.note_redundant(ends.redundant);
     if (conditions_ != nullptr) system_.close_with(*conditions_);
+}
+
+void NodalWindow::border_with(std::function<DenseMatrix(Formed)> columns)
+{
+    system_.conditions()->border_with([columns = std::move(columns)](Elimination& formed) {
+        Elimination* const only = &formed;
+        return columns({&only, 1});
+    });
+}
+
+bool NodalWindow::adopt(const BorderedWindow& other, bool is_pulled)
+{
+    return system_.adopt(static_cast<const NodalWindow&>(other).system_, is_pulled);
+}
+
+void NodalWindow::solve_for(const BorderedWindow& other, std::span<double> dx)
+{
+    system_.solve_for(static_cast<const NodalWindow&>(other).system_, dx);
 }
 
 /// The mesh's number of the stretch's element end.
@@ -57,7 +75,9 @@ bool NodalWindow::open(int first, int last, SolveReport& report)
     layout_.n_numbers = ends_.n_numbers;
     if (!is_ready_ && !begin_front(report)) return false;
     if (layout_.X_last && !set_state(far_, ends_.end, report)) return false;
-    layout_.angles = layout_.X_first ? end_.here().angles : tables_.loads.turns.begin();
+    layout_.angles = layout_.X_first  ? end_.here().angles
+                     : ends_.is_phase ? tables_.loads.turns.begin(ends_.start)
+                                      : tables_.loads.turns.begin();
     system_.open(layout_, layout_.X_first ? &end_.here() : nullptr, layout_.X_last ? &far_ : nullptr);
     if (ends_.has_components()) return true;   // which momenta, is decided with the nodes
     if (!layout_.X_first && layout_.P_first)

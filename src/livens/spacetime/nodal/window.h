@@ -3,6 +3,7 @@
 #pragma once
 
 #include "livens/spacetime/march/ends.h"
+#include "livens/spacetime/nodal/bordered_window.h"
 #include "livens/spacetime/nodal/element_checks.h"
 #include "livens/spacetime/nodal/element_end.h"
 #include "livens/spacetime/nodal/kernel/march_kernel.h"
@@ -14,7 +15,7 @@ namespace livens::inline spacetime_internal {
 
 /// Windows from the end where the state is known, or one window of all elements; radau: single elements from
 /// the state at the start.
-class NodalWindow final : public Window, private ElementMonitor {
+class NodalWindow final : public BorderedWindow, private ElementMonitor {
 public:
     /// References must outlive the window.
     NodalWindow(const ModelTables& tables, const TimeMesh& mesh, const Ends& ends, const ElementRule& rule);
@@ -28,6 +29,12 @@ public:
     void restart();
     bool open(int first, int last, SolveReport& report) override;
     NodalSystem& equations() override { return system_; }
+    const NodalSystem& equations() const { return system_; }
+    void border_with(std::function<DenseMatrix(Formed)> columns) override;
+    bool factorise() override { return system_.factorise(); }
+    bool adopt(const BorderedWindow& other, bool is_pulled) override;
+    std::vector<double> rows_in(Formed formed) override { return system_.rows_in(*formed.front()); }
+    void solve_for(const BorderedWindow& other, std::span<double> dx) override;
     bool start_from(const Guess& guess) override;
     State at(int element_end) const override;
     AcceptedElements close(const AcceptanceCriteria& criteria, SolveReport& report) override;

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// theory.md, "Drives", Events, says what goes on and what must meet.
+#include "livens/spacetime/events.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "livens/base/text.h"
+#include "livens/diagnostics/largest.h"
+#include "livens/diagnostics/sample.h"
+#include "livens/dynamics/start/consistent_start.h"
+
+namespace livens::inline spacetime_internal {
+
+namespace {
+
+/// From rows of an acting model to all.
+void spread(std::vector<double>& values, const std::vector<int>& rows, int n_rows)
+{
+    if (values.empty() && rows.size() > 0) return;
+    const std::size_t n_sets = rows.empty() ? 0 : values.size() / rows.size();
+    std::vector<double> all(n_sets * static_cast<std::size_t>(n_rows), 0.0);
+    for (std::size_t set = 0; set < n_sets; ++set)
+        for (std::size_t k = 0; k < rows.size(); ++k)
+            // Rows that do not act have zero multipliers.
+            all[set * static_cast<std::size_t>(n_rows) + static_cast<std::size_t>(rows[k])] =
+                values[set * rows.size() + k];
+    values = std::move(all);
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& more, std::size_t from)
+{
+    to.insert(to.end(), more.begin() + static_cast<std::ptrdiff_t>(from), more.end());
+}
+
+std::string names_of(const Model& model, double t, double Joint::*when, double gap)
+{
+    std::string names;
+    for (const Joint& joint : model.joints())
+        if (std::abs(joint.*when - t) <= gap) names += (names.empty() ? "'" : ", '") + joint.name + "'";
+    return names;
+}
+
+}   // namespace
+
+std::vector<double> events_inside(const Model& model, double start, double end)
+{
+    const double gap = nearest_ends * (end - start);
+    std::vector<double> inside;
+    for (const double t : model.events())
+        if (t > start + gap && t < end - gap) inside.push_back(t);
+    return inside;
+}
+
+std::vector<double> phase_ends(const Model& model, const Time& time)
+{
+    const double start = start_of(time), end = end_of(time);
+    std::vector<double> ends{start};
+    for (const double t : events_inside(model, start, end)) {
+        double at = t;
+        if (const auto* mesh = std::get_if<TimeMesh>(&time))
+            // A mesh has merged near instants; the phase ends where the element does.
+            at = *std::ranges::min_element(mesh->ends, {}, [t](double e) { return std::abs(e - t); });
+        if (at > ends.back() && at < end) ends.push_back(at);
+    }
+    ends.push_back(end);
+    return ends;
+}
+
+void widen(Motion& motion, const Model& model, const ActingModel& acting)
+{
+    const std::size_t n_elements = static_cast<std::size_t>(motion.n_elements());
+    motion.n_rows = model.n_rows();
+    spread(motion.multipliers.values, acting.rows, model.n_rows());
+    spread(motion.end_multipliers, acting.rows, model.n_rows());
+    if (acting.rows.empty()) {   // no row acts: the arrays were empty
+        const auto n = static_cast<std::size_t>(model.n_rows());
+        motion.multipliers.values.assign(
+            n_elements * static_cast<std::size_t>(motion.multipliers.degree + 1) * n, 0.0);
+        motion.end_multipliers.assign(2 * (n_elements + 1) * n, 0.0);
+    }
+    motion.multipliers.n_values = model.n_rows();
+    for (int& row : motion.redundant_rows) row = acting.rows[row];
+}
+
+void join(Motion& whole, Motion&& next)
+{
+    if (whole.mesh.ends.empty()) {
+        whole = std::move(next);
+        return;
+    }
+    const auto bodies = static_cast<std::size_t>(whole.n_bodies),
+               rows = static_cast<std::size_t>(whole.n_rows);
+    append(whole.mesh.ends, next.mesh.ends, 1);
+    append(whole.mesh.required, next.mesh.required, 0);
+    append(whole.mesh.bends, next.mesh.bends, 0);
+    // The first node of the next phase is the last of this one, and is kept once.
+    append(whole.X.values, next.X.values, static_cast<std::size_t>(whole.X.n_values));
+    append(whole.multipliers.values, next.multipliers.values, 0);
+    append(whole.velocities, next.velocities, bodies);
+    append(whole.momenta, next.momenta, bodies);
+    if (!whole.accelerations.empty()) {
+        whole.accelerations.resize(whole.accelerations.size() - bodies);
+        append(whole.accelerations, next.accelerations, bodies);
+    }
+    if (!whole.end_multipliers.empty()) {
+        whole.end_multipliers.resize(whole.end_multipliers.size() - rows);
+        append(whole.end_multipliers, next.end_multipliers, rows);
+    }
+    const std::size_t ends = next.mesh.ends.size();
+    append(whole.load_angles, next.load_angles, next.load_angles.size() / ends);
+    for (const int row : next.redundant_rows)
+        if (std::ranges::find(whole.redundant_rows, row) == whole.redundant_rows.end())
+            whole.redundant_rows.push_back(row);
+    std::ranges::sort(whole.redundant_rows);
+}
+
+ActivationMismatch activation_mismatch(const Model& model, const Motion& motion, int end)
+{
+    ActivationMismatch miss;
+    const double t = motion.mesh.ends[end], gap = nearest_ends * (motion.end() - motion.start());
+    const bool begins = std::ranges::any_of(
+        model.joints(), [&](const Joint& joint) { return std::abs(joint.from - t) <= gap; });
+    if (!begins) return miss;
+    const State state = motion.at_end(end);
+    // Just behind the event: the joints that begin are there, those that end are not.
+    const ActingModel acting = acting_at(model, t + 0.5 * nearest_ends * (motion.end() - motion.start()));
+    const TriedStart tried = try_consistent_start(acting.model, state, StartPolicy::project);
+    if (!tried.closed)   // no place near holds them
+        miss.shift = std::numeric_limits<double>::infinity();
+    for (std::size_t b = 0; tried.closed && b < state.X.size(); ++b) {
+        const State& closed = tried.closed->start;
+        const Matrix34 dX = closed.X[b] - state.X[b], dV = closed.V[b] - state.V[b];
+        raise_to(miss.shift, norm(dX.column(0)) / model.length());
+        raise_to(miss.turn, norm(directors(dX)) / std::numbers::sqrt2);
+        raise_to(miss.speed, norm(dV.column(0)) / model.length());
+        raise_to(miss.spin, norm(directors(dV)) / std::numbers::sqrt2);
+    }
+    return miss;
+}
+
+bool is_met(const Model& model, const Motion& motion, int end, double duration, double tolerance,
+            SolveReport& report)
+{
+    const double t = motion.mesh.ends[end];
+    const std::string names = names_of(model, t, &Joint::from, nearest_ends * duration);
+    if (names.empty() || std::isinf(tolerance)) return true;
+    const ActivationMismatch miss = activation_mismatch(model, motion, end);
+    // Velocities that must meet are compared with the fastest rate of the motion so far, and with one over
+    // its duration at least.
+    double fastest = 1 / duration;
+    const auto n = static_cast<std::size_t>(motion.n_bodies) * (static_cast<std::size_t>(end) + 1);
+    for (std::size_t i = 0; i < std::min(n, motion.velocities.size()); ++i)
+        raise_to(fastest, std::max(norm(motion.velocities[i].column(0)) / model.length(),
+                                   norm(directors(motion.velocities[i]))));
+    if (std::max(miss.shift, miss.turn) <= tolerance &&
+        std::max(miss.speed, miss.spin) <= tolerance * fastest)
+        return true;
+    const bool is_near = std::isfinite(miss.shift);
+    report.status = SolveStatus::not_converged;
+    report.failed_at = t;
+    report.message =
+        names + " begins to act at " + to_text(t, 6) +
+        " s, where bodies are, or move, otherwise than it holds them (" +
+        (is_near ? "off by " + to_text(miss.shift * model.length(), 2) + " m, " + to_text(miss.turn, 2) +
+                       " rad, " + to_text(miss.speed * model.length(), 2) + " m/s, " + to_text(miss.spin, 2) +
+                       " rad/s"
+                 : std::string("no place near fits")) +
+        "): livens knows no impacts; try: a law that meets position and rate there, or shorter elements "
+        "if they are meant to meet";
+    return false;
+}
+
+std::string begin_in_words(const Model& model, double start, double end)
+{
+    std::string words;
+    for (const double t : events_inside(model, start, end))
+        if (const std::string names = names_of(model, t, &Joint::from, 0); !names.empty())
+            words += (words.empty() ? "" : ", ") + names + " begins to act at " + to_text(t, 6) + " s";
+    return words;
+}
+
+void tell_releases(const Model& model, const Motion& motion, const std::vector<double>& ends,
+                   SolveReport& report)
+{
+    const double gap = nearest_ends * (ends.back() - ends.front());
+    for (std::size_t k = 1; k + 1 < ends.size(); ++k) {
+        if (ends[k] >= motion.end()) return;
+        const std::vector<JointSample> at = sample_joints(model, motion, ends[k]);
+        for (std::size_t j = 0; j < at.size(); ++j) {
+            const Joint& joint = model.joints()[j];
+            if (!(std::abs(joint.until - ends[k]) <= gap)) continue;
+            report.notes.push_back("'" + joint.name + "' is released at " + to_text(ends[k], 6) +
+                                   " s, with a reaction of " + to_text(norm(at[j].left.force), 3) +
+                                   " N and " + to_text(norm(at[j].left.torque), 3) +
+                                   " N m; velocities, momenta and energy go on without a jump");
+        }
+    }
+}
+
+}   // namespace livens::inline spacetime_internal

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Joints that act for a part of the time divide it into phases: where these end, what must meet there, and
+// how the motions of phases become one.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "livens/multibody/model.h"
+#include "livens/multibody/motion.h"
+#include "livens/solvers/report.h"
+#include "livens/spacetime/options.h"
+
+namespace livens::inline spacetime_internal {
+
+/// Instants inside of a time, not at its ends, where joints begin or end to act.
+std::vector<double> events_inside(const Model& model, double start, double end);
+/// Start, end, and what is between them where joints begin or end to act; of a mesh its element ends.
+std::vector<double> phase_ends(const Model& model, const Time& time);
+
+/// The motion of a phase with the multipliers of the whole model's rows.
+void widen(Motion& motion, const Model& model, const ActingModel& acting);
+/// One motion after the other, which begins where it ended. Where they meet the state is that of the first,
+/// and each has its side of what has two.
+void join(Motion& whole, Motion&& next);
+
+/// How far the joints that begin at an element end find the bodies from where they will hold them: what
+/// closing moves, in lengths and rad, and changes of velocities, by the model's length. Infinite: it fails.
+struct ActivationMismatch {
+    double shift = 0, turn = 0, speed = 0, spin = 0;
+};
+ActivationMismatch activation_mismatch(const Model& model, const Motion& motion, int end);
+
+/// A joint that begins where bodies are elsewhere, or move otherwise, would be an impact: false, and the
+/// report says so, where what begins at an element end is off by more than the tolerance. `duration`: of all.
+bool is_met(const Model& model, const Motion& motion, int end, double duration, double tolerance,
+            SolveReport& report);
+
+/// "'latch' begins to act at 0.5 s": joints that begin between two instants, for a motion that was not found;
+/// empty: none does.
+std::string begin_in_words(const Model& model, double start, double end);
+
+/// Notes on what joints did when they let go.
+void tell_releases(const Model& model, const Motion& motion, const std::vector<double>& phase_ends,
+                   SolveReport& report);
+
+}   // namespace livens::inline spacetime_internal
