@@ -21,6 +21,17 @@ def pendulum(damping: Any = 0.0, length: float = 1.0) -> lv.Model:
     return m
 
 
+def test_a_release_is_found_from_a_known_state() -> None:
+    """A stone that turns with 2 rad/s on a rod of 1 m, without weight, leaves along the tangent."""
+    m = lv.Model(gravity=(0, 0, 0))
+    m.add_body("stone", lv.point(mass=1), position=(1, 0, 0), velocity=(0, 0, 2))
+    m.add_rod("sling", ("world", (0, 0, 0)), ("stone", (0, 0, 0)), length=1, until=lv.unknown(0.2, low=0.05, high=0.45))
+    t = 0.3
+    x = math.cos(2 * t) - 2 * math.sin(2 * t) * (0.5 - t)
+    sol = lv.solve(m, 0.5, elements=10, method=lv.Lobatto(8), start="state", end={"stone.x": x})
+    assert sol.unknowns["sling.until"] == pytest.approx(t, abs=1e-11)
+
+
 def test_a_throw_finds_its_duration() -> None:
     """Thrown at 45 degrees with 10 m/s: back at its height after 2 v sin / g."""
     m = lv.Model(gravity=(0, 0, -G))

@@ -321,6 +321,18 @@ TEST(PhasesBetweenEnds, AJointThatFindsItsBodiesTakesHoldOfThem)
     EXPECT_NEAR(s.numbers.values[0], 0.7, 1e-13);
 }
 
+/// What the rod takes at its beginning, a rate along it, can be anything before: no end tells it.
+TEST(PhasesBetweenEnds, RatesThatAJointTakesAtItsBeginningAreNotDetermined)
+{
+    const auto model = towed(0.7);
+    Problem problem{{model->start(), Known::positions, model->start(), Known::positions}};
+    const double x[] = {0.29, 1.2};
+    for (int b = 0; b < 2; ++b) problem.conditions.end.X[b].set_column(0, {x[b], 3, 0});
+    const Solution s = solve(*model, problem, make_time_mesh(0, 1, 10, model->load_breaks()), Lobatto{4, 0});
+    EXPECT_FALSE(s.report.converged());
+    EXPECT_EQ(s.report.status, SolveStatus::singular) << s.report.message;
+}
+
 TEST(PhasesBetweenEnds, WhatIsNotSolvedIsRefusedByName)
 {
     const Made made = [](std::span<const double>) { return Sling{}; };
@@ -342,6 +354,8 @@ TEST(PhasesBetweenEnds, WhatIsNotSolvedIsRefusedByName)
     EXPECT_EQ(refused(problem_of({{"until", 0.2}}, released, {{"stone.x", 9}, {"stone.z", 1}}), released),
               "conditions-too-many");
     EXPECT_EQ(refused(problem_of({{"until", 0.2}}, released, {}), released), "unknown-march");
+    // behind the end of time
+    EXPECT_EQ(refused(problem_of({{"until", 2}}, released, {{"stone.x", 9}}), released), "unknown-unseen");
 }
 
 }   // namespace

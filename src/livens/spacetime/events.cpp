@@ -33,7 +33,7 @@ void spread(std::vector<double>& values, const std::vector<int>& rows, int n_row
 }
 
 template <class T>
-void append(std::vector<T>& to, const std::vector<T>& more, std::size_t from)
+void append_from(std::vector<T>& to, const std::vector<T>& more, std::size_t from)
 {
     to.insert(to.end(), more.begin() + static_cast<std::ptrdiff_t>(from), more.end());
 }
@@ -96,24 +96,24 @@ void join(Motion& whole, Motion&& next)
     }
     const auto bodies = static_cast<std::size_t>(whole.n_bodies),
                rows = static_cast<std::size_t>(whole.n_rows);
-    append(whole.mesh.ends, next.mesh.ends, 1);
-    append(whole.mesh.required, next.mesh.required, 0);
-    append(whole.mesh.bends, next.mesh.bends, 0);
+    append_from(whole.mesh.ends, next.mesh.ends, 1);
+    append_from(whole.mesh.required, next.mesh.required, 0);
+    append_from(whole.mesh.bends, next.mesh.bends, 0);
     // The first node of the next phase is the last of this one, and is kept once.
-    append(whole.X.values, next.X.values, static_cast<std::size_t>(whole.X.n_values));
-    append(whole.multipliers.values, next.multipliers.values, 0);
-    append(whole.velocities, next.velocities, bodies);
-    append(whole.momenta, next.momenta, bodies);
+    append_from(whole.X.values, next.X.values, static_cast<std::size_t>(whole.X.n_values));
+    append_from(whole.multipliers.values, next.multipliers.values, 0);
+    append_from(whole.velocities, next.velocities, bodies);
+    append_from(whole.momenta, next.momenta, bodies);
     if (!whole.accelerations.empty()) {
         whole.accelerations.resize(whole.accelerations.size() - bodies);
-        append(whole.accelerations, next.accelerations, bodies);
+        append_from(whole.accelerations, next.accelerations, bodies);
     }
     if (!whole.end_multipliers.empty()) {
         whole.end_multipliers.resize(whole.end_multipliers.size() - rows);
-        append(whole.end_multipliers, next.end_multipliers, rows);
+        append_from(whole.end_multipliers, next.end_multipliers, rows);
     }
     const std::size_t ends = next.mesh.ends.size();
-    append(whole.load_angles, next.load_angles, next.load_angles.size() / ends);
+    append_from(whole.load_angles, next.load_angles, next.load_angles.size() / ends);
     for (const int row : next.redundant_rows)
         if (std::ranges::find(whole.redundant_rows, row) == whole.redundant_rows.end())
             whole.redundant_rows.push_back(row);

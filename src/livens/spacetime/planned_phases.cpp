@@ -11,6 +11,7 @@
 #include "livens/dynamics/start/consistent_start.h"
 #include "livens/spacetime/events.h"
 #include "livens/spacetime/guess.h"
+#include "livens/spacetime/march/components.h"
 #include "livens/spacetime/solve_mesh.h"
 
 namespace livens::inline spacetime_internal {
@@ -20,7 +21,7 @@ namespace {
 /// Of the rates that are stated at a start that is not known, or of steady ones.
 constexpr std::array<double, 7> shares{1, 0.5, 1.5, 0, 2, 0.75, -1};
 
-bool is_at_rest(const State& state)
+bool has_no_rates(const State& state)
 {
     return std::ranges::all_of(
         state.V, [](const Matrix34& V) { return std::ranges::all_of(V.a, [](double v) { return v == 0; }); });
@@ -68,11 +69,27 @@ Guess PlannedPhases::next_march()
     const int i =
         std::exchange(n_marches_, ends.is_start_known ? static_cast<int>(shares.size()) : n_marches_ + 1);
     State start = ends.start;
-    if (!ends.is_start_known && is_at_rest(start) && ends.is_end_guessed)
-        start.V = guess_between(ends.start, ends.end)(ends.start.t).V;
+    if (!ends.is_start_known && has_no_rates(start)) start.V = steady_rates();
     for (Matrix34& V : start.V) V = shares[i] * V;
     if (i > 0) told_ = "found from the stated or steady rates times " + to_text(shares[i], 3);
     return march_over_phases(numbered_.model(), start, numbered_.mesh(), degree_);
+}
+
+/// Of a motion straight to the end: as it is guessed, or to where what falls from rest meets the conditions.
+const std::vector<Matrix34>& PlannedPhases::steady_rates()
+{
+    if (!rates_.empty()) return rates_;
+    const Ends& ends = numbered_.ends();
+    State end = ends.end;
+    if (!ends.is_end_guessed) {
+        const Guess fall = march_over_phases(numbered_.model(), ends.start, numbered_.mesh(), degree_);
+        const Model model = acting_at_end(numbered_.model(), ends.start.t, ends.end.t, true);
+        const ModelTables tables(model, ends.independent_at_end);
+        end = settled(tables, ends, Condition::At::end, fall ? fall(ends.end.t) : ends.start);
+        end.t = ends.end.t;
+    }
+    rates_ = guess_between(ends.start, end)(ends.start.t).V;
+    return rates_;
 }
 
 void PlannedPhases::make_plan(const Guess& motion)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "livens/spacetime/march/numbered.h"
 #include "livens/spacetime/march/window.h"
@@ -30,13 +31,15 @@ public:
 
 private:
     Guess next_march();
+    const std::vector<Matrix34>& steady_rates();
     void make_plan(const Guess& motion);
 
     const Problem& problem_;
     const NumberedProblem& numbered_;
     int degree_;
     int n_marches_ = 0;
-    Guess first_;   // of which the plan was made
+    std::vector<Matrix34> rates_;   // of bodies at rest, once they are asked for
+    Guess first_;                   // of which the plan was made
     PhasePlan plan_;
     std::string why_, told_;
 };

@@ -11,16 +11,6 @@
 
 namespace livens::inline spacetime_internal {
 
-namespace {
-
-/// of += factor * what
-void add(std::vector<double>& of, double factor, std::span<const double> what)
-{
-    for (std::size_t i = 0; i < of.size(); ++i) of[i] += factor * what[i];
-}
-
-}   // namespace
-
 PhasesWindow::Frame PhasesWindow::frame_of(const Phase& phase, int node)
 {
     const Nodes& nodes = phase.system().nodes();
@@ -168,7 +158,7 @@ bool PhasesWindow::condense(const DenseMatrix& by_numbers)
             const Response& of = responses_[k];
             std::ranges::copy(start, responses_[k].start_by_all.column(c).begin());
             end = product(of.end_by_start, start);
-            if (c >= s) add(end, 1, of.end_by_numbers.column(c - s));
+            if (c >= s) add_scaled(end, 1, of.end_by_numbers.column(c - s));
             if (k + 1 < phases_.size()) start = product(of.start_by_end, end);
         }
         const std::vector<double> at_start = product(start_rows_, first_start),
@@ -194,7 +184,7 @@ void PhasesWindow::solve_rows(const PhasesWindow& other, const std::vector<std::
         const std::span<double> of = to.first(n_of(*phases_[k]));
         phases_[k]->system().solve_rows(other.phases_[k]->system(), balances[k], of);
         end = end_along(k, of);
-        add(end, 1, product(responses_[k].end_by_start, starts[k]));
+        add_scaled(end, 1, product(responses_[k].end_by_start, starts[k]));
         if (k + 1 < n) starts[k + 1] = product(responses_[k].start_by_end, end);
         to = to.subspan(of.size());
     }
@@ -207,12 +197,10 @@ void PhasesWindow::solve_rows(const PhasesWindow& other, const std::vector<std::
     for (std::size_t k = 0; k < n; ++k) {
         const Response& of = responses_[k];
         const std::span<double> here = to.first(n_of(*phases_[k]));
-        add(starts[k], 1, product(of.start_by_all, x));
-        for (std::size_t i = 0; i < of.by_start.size(); ++i)
-            for (std::size_t j = 0; j < here.size(); ++j) here[j] += starts[k][i] * of.by_start[i][j];
+        add_scaled(starts[k], 1, product(of.start_by_all, x));
+        for (std::size_t i = 0; i < of.by_start.size(); ++i) add_scaled(here, starts[k][i], of.by_start[i]);
         for (std::size_t i = 0; i < of.by_numbers.size(); ++i)
-            for (std::size_t j = 0; j < here.size(); ++j)
-                here[j] += x[static_cast<std::size_t>(n_start()) + i] * of.by_numbers[i][j];
+            add_scaled(here, x[static_cast<std::size_t>(n_start()) + i], of.by_numbers[i]);
         to = to.subspan(here.size());
     }
 }

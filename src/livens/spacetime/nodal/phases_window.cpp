@@ -13,7 +13,7 @@ namespace livens::inline spacetime_internal {
 
 namespace {
 
-TimeMesh part_of(const TimeMesh& whole, int first, int last)
+TimeMesh stretch_of(const TimeMesh& whole, int first, int last)
 {
     TimeMesh part{{whole.ends.begin() + first, whole.ends.begin() + last + 1}};
     for (const double t : whole.required)
@@ -38,7 +38,7 @@ Ends ends_of(const PhasePlan::Phase& plan, const TimeMesh& mesh)
 PhasesWindow::Phase::Phase(const Model& model, const TimeMesh& whole, const PhasePlan::Phase& plan,
                            const ElementRule& rule)
     : acting(acting_at(model, 0.5 * (whole.ends[plan.first] + whole.ends[plan.last]))),
-      mesh(part_of(whole, plan.first, plan.last)), ends(ends_of(plan, mesh)),
+      mesh(stretch_of(whole, plan.first, plan.last)), ends(ends_of(plan, mesh)),
       tables(acting.model, plan.independent), window(tables, mesh, ends, rule)
 {}
 
