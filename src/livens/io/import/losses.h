@@ -75,9 +75,9 @@ inline constexpr LossKind mesh_package{"import-lost", "mesh", "meshes",
                                        "give the folder of package '@'"};
 inline constexpr LossKind mesh_format{"import-lost", "mesh", "meshes", "@ meshes are not drawn",
                                       "STL, OBJ, PLY, DAE and MSH are drawn: convert them"};
-inline constexpr LossKind mesh_outside{
-    "import-lost", "mesh", "meshes", "meshes outside the given folders are not drawn",
-    "give their folder as a package; a scenario file must lie in a folder above its meshes"};
+inline constexpr LossKind mesh_outside{"import-lost", "mesh", "meshes",
+                                       "meshes outside the given folders are not drawn",
+                                       "give their folder as a package"};
 inline constexpr LossKind mesh_unreadable{"import-lost", "mesh", "meshes", "not drawn: @"};
 inline constexpr LossKind mesh_scale{"import-lost", "mesh", "meshes",
                                      "meshes with an uneven or negative scale are not drawn"};
