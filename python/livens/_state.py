@@ -310,7 +310,7 @@ def _vector(value: Any, n: int, path: str, unit: str = "") -> list[float]:
 
 
 def _unit(name: str) -> str:
-    return "rad" if name.endswith(".angle") else "m"
+    return "rad" if name.rpartition(".")[2].startswith("angle") else "m"
 
 
 def _quaternion(model: Model, name: str, value: Any) -> tuple[str, list[float]]:
