@@ -94,8 +94,10 @@ std::string force_of(const Load& load, const State& start)
 std::string limits_of(const Load& load)
 {
     const auto stiffness = std::ranges::find(load.readings, "limit_stiffness", &LoadReading::name);
-    if (stiffness == load.readings.end()) return {};
-    return fmt::format(", limits {:.4g} {}", stiffness->value(LoadArguments()), stiffness->unit);
+    const auto damping = std::ranges::find(load.readings, "limit_damping", &LoadReading::name);
+    if (stiffness == load.readings.end() || damping == load.readings.end()) return {};
+    return fmt::format(", limits {:.4g} {}, damping {:.4g} {}", stiffness->value(LoadArguments()),
+                       stiffness->unit, damping->value(LoadArguments()), damping->unit);
 }
 
 /// Where rods and springs end in the world, since their points are stated on the bodies; and forces, which

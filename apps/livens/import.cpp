@@ -2,6 +2,10 @@
 // livens import: a scenario out of another program's file.
 #include <fmt/format.h>
 
+#include <fstream>
+#include <iterator>
+#include <set>
+
 #include "commands.h"
 #include "console.h"
 #include "failure.h"
@@ -50,6 +54,39 @@ bool is_imported(std::string_view head)
     return head.starts_with("# From ") && head.substr(0, head.find('\n')).ends_with(", by livens import.");
 }
 
+std::string content_of(const std::filesystem::path& file)
+{
+    std::ifstream in(file, std::ios::binary);
+    std::string content((std::istreambuf_iterator<char>(in)), {});
+    if (!in) throw failure(exit_input_output, "cannot read '" + file.string() + "'");
+    return content;
+}
+
+/// Meshes that are not below the scenario's folder are put there by the same paths.
+void put_meshes(const std::filesystem::path& output, const std::filesystem::path& folder,
+                const std::vector<std::filesystem::path>& meshes, bool force)
+{
+    namespace fs = std::filesystem;
+    std::set<fs::path> done;
+    for (const fs::path& mesh : meshes) {
+        std::error_code error;
+        const fs::path source = fs::weakly_canonical(mesh, error);
+        const fs::path target = output.parent_path() / source.lexically_relative(folder);
+        if (!done.insert(source).second || same_file(source, target)) continue;
+        fs::create_directories(target.parent_path(), error);
+        const bool is_there = fs::exists(fs::symlink_status(target, error));
+        if (is_there && fs::is_regular_file(target, error) && content_of(source) == content_of(target))
+            continue;
+        for (const fs::path& other : meshes) check_differs(target, other, "it is a mesh of the robot");
+        if (is_there && !force)
+            throw failure(exit_input_output,
+                          "cannot write '" + target.string() +
+                              "': a file of other content is there; choose another folder, "
+                              "or add '--force' to replace it");
+        replace_file(target, content_of(source));
+    }
+}
+
 std::string json_of(const std::filesystem::path& output, const Scenario& scenario,
                     const std::vector<Diagnostic>& imported)
 {
@@ -75,6 +112,7 @@ int import_command(const ImportArguments& arguments, const Common& common)
     std::vector<Diagnostic> imported;
     const Scenario scenario = accepted(std::move(result), common, &imported);
     check_inputs(output, scenario);
+    put_meshes(output, result.folder, scenario.mesh_files, arguments.force);
     replace_file(output, toml);
     if (common.json) {
         print(json_of(output, scenario, imported));

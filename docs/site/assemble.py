@@ -449,7 +449,7 @@ PYTHON = {
     "Methods": ["Method", "Auto", "Lobatto", "Radau", "Mixed", "Midpoint", "Endpoint", "MethodOptions"],
     "Solutions": ["Solution", "load_solution", "Series", "BodySeries", "JointSeries", "LoadSeries", "PointSeries", "SensorSeries",
                   "ReadingSeries", "Parts", "Peak", "Extremes", "compare", "Comparison", "BodyState"],
-    "States": ["Coordinates", "MechanismState", "PlacedBody", "PlacedJoint", "reach"],
+    "States": ["Coordinates", "MechanismState", "PlacedBody", "PlacedJoint", "PlacedPoint", "reach"],
     "Rest and small motions": ["Equilibrium", "RestBody", "RestJoint", "Linearisation", "StateMatrices", "Modes",
                                "ModeBody", "ModeJoint"],
     "What is wrong": ["EquilibriumError", "InputError", "SolveError", "ResultFileError", "SolveWarning", "ModelWarning", "SlowWarning",

@@ -40,14 +40,14 @@ from ._results import Solution, load_solution
 from ._series import Series
 from ._shown import Extremes, Peak
 from ._solve import solve, solve_many
-from ._state import Coordinates, MechanismState, PlacedBody, PlacedJoint, reach
+from ._state import Coordinates, MechanismState, PlacedBody, PlacedJoint, PlacedPoint, reach
 from ._values import Condition, Method, Shape, momenta, positions, state, table, unknown, visual
 
 __all__ = [
     "Added", "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Coordinates", "Diagnostic", "Drive", "Entry", "Equilibrium",
     "EquilibriumError", "Extremes", "InputError", "Joint", "JointSeries", "Linearisation", "Load", "LoadSeries", "MechanismState", "Method",
     "MethodOptions", "ModeBody", "ModeJoint", "Model", "ModelWarning", "Modes", "Names", "Parameters", "Parts", "Peak",
-    "Place", "PlacedBody", "PlacedJoint", "Point", "PointSeries",
+    "Place", "PlacedBody", "PlacedJoint", "PlacedPoint", "Point", "PointSeries",
     "ReadingSeries", "RestBody", "RestJoint", "ResultFileError", "Section", "Sensor", "SensorSeries", "Series",
     "Shape", "SlowWarning", "Solution", "SolveError", "SolveWarning", "StateMatrices", "__version__", "compare",
     "explain", "from_mjcf", "from_urdf", "load", "load_solution", "momenta", "positions", "reach", "solve", "solve_many", "state",

@@ -23,7 +23,8 @@ def from_urdf(file: str | os.PathLike[str], *, at: Mapping[str, float | str] | N
     """Reads a robot out of a URDF, strictly: each tag is taken, refused, or listed in :attr:`Model.imported`.
 
     Bodies are called as links, joints as joints, and coordinates are those of the file. Links that fixed joints hold
-    together are one body; gravity is 9.81 m/s^2 down z.
+    together are one body, and stay as named points (``sol["tool0"].position``; points have no axes: an orientation is that
+    of the body). Gravity is 9.81 m/s^2 down z.
 
     Args:
         file: Its name.
@@ -34,7 +35,7 @@ def from_urdf(file: str | os.PathLike[str], *, at: Mapping[str, float | str] | N
         meshes: Whether visuals are drawn: boxes, cylinders, spheres, and meshes (STL, OBJ, PLY, DAE, MSH) that lie at or
             below the file's folder or in a stated package.
         limits: What becomes of limits of joints: ``"stop"`` makes them ``limits`` of the joints, springs that act beyond
-            them; limits at or beyond which a joint begins are listed instead.
+            them; limits beyond which a joint begins are listed instead.
         inertias: What becomes of inertias that belong to no body: mended by the least change, or an error.
         loops: Pairs of links that the file leaves apart, and how their frames are held together:
             ``("left", "right", "weld")``, ``"spherical"`` (by their origins) or ``"revolute"`` (about their z axes).
@@ -49,7 +50,7 @@ def from_urdf(file: str | os.PathLike[str], *, at: Mapping[str, float | str] | N
         >>> import livens as lv
         >>> robot = '''<robot name="arm"><link name="base"/>
         ...   <link name="rod"><inertial><origin xyz="0.5 0 0"/><mass value="2"/>
-        ...     <inertia ixx="0.001" iyy="0.17" izz="0.17"/></inertial></link>
+        ...     <inertia ixx="0.001" iyy="0.17" izz="0.17" ixy="0" ixz="0" iyz="0"/></inertial></link>
         ...   <joint name="hinge" type="revolute"><parent link="base"/><child link="rod"/><axis xyz="0 1 0"/>
         ...     <limit lower="-1" upper="1" effort="10" velocity="2"/><dynamics damping="0.1"/></joint></robot>'''
         >>> import pathlib, tempfile

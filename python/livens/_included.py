@@ -82,6 +82,25 @@ def files_of(tree: Any) -> list[str]:
             for path in ([item] if key in ("mesh", "file") and isinstance(item, str) else files_of(item))]
 
 
+def files_below(tree: Any, folder: str) -> dict[str, str]:
+    """The same that are there, by paths below the folder, and those that files of scenarios among them name."""
+    found: dict[str, str] = {}
+    left = [(tree, "")]
+    while left:
+        one, begin = left.pop()
+        for named in files_of(one):
+            path = os.path.normpath(os.path.join(begin, named))
+            source = os.path.join(folder, path)
+            outside = os.path.isabs(path) or path.split(os.sep)[0] == os.pardir   # which no scenario may name
+            if outside or path in found or not os.path.isfile(source):
+                continue
+            found[path] = source
+            if path.endswith(".toml"):
+                from ._load import load
+                left.append((load(source, check=False)._root, os.path.dirname(path)))
+    return found
+
+
 def _moved_files(tree: Any, folder: str) -> None:
     """Paths that began elsewhere begin there."""
     for key, item in tree.items():

@@ -15,7 +15,7 @@ from ._editing import Tree
 from ._entries import Entry, Names, Section, default_name, unknown_name
 from ._errors import Diagnostic, SlowWarning, SolveWarning, fault, file_name, make_way, stack_level, user_place
 from ._generated import Body, Drive, Joint, Load, Point, Sensor
-from ._included import Added, as_part, files_of
+from ._included import Added, as_part, files_below, files_of
 from ._meshes import MeshFile, named_meshes
 from ._other_names import of_model
 from ._parameters import Parameters
@@ -28,13 +28,18 @@ if TYPE_CHECKING:
     from ._values import Matrix, Vector
 
 
-def _put_beside(name: str, mesh: MeshFile) -> None:
-    """The file of a mesh, beside that of a scenario."""
-    target = os.path.join(os.path.dirname(name), mesh)
-    with open(mesh.path, "rb") as stream:
+def _put_beside(name: str, path: str, source: str) -> None:
+    """A file that a scenario names, below that scenario's own folder."""
+    target = os.path.join(os.path.dirname(name), path)
+    if os.path.exists(target) and os.path.samefile(target, source):
+        return
+    with open(source, "rb") as stream:
         content = stream.read()
-    if os.path.exists(target) and not _holds(target, content):
-        raise FileExistsError(errno.EEXIST, "a mesh of the model would replace a file of other content", target)
+    if _holds(target, content):
+        return
+    if os.path.exists(target):
+        raise FileExistsError(errno.EEXIST, "a file that the model names would replace one of other content", target)
+    os.makedirs(os.path.dirname(target) or ".", exist_ok=True)
     _core.write_file(target, content)
 
 
@@ -265,7 +270,8 @@ class Model(Tree):
         generated. ``load(text=m.to_toml()) == m``.
 
         Args:
-            file: Its name. Meshes from other folders are copied beside it.
+            file: Its name. Meshes and included files that are in another folder are copied to where the text has them:
+                below the folder of ``file``, by the same paths.
             force: Whether to replace an existing file with other content; never a mesh of the model.
 
         Raises:
@@ -276,12 +282,14 @@ class Model(Tree):
         text = self._text if self._text is not None else toml(self._root)
         if file is not None:
             name = file_name(file)
-            if not _holds(name, text.encode()):
-                meshes = list(named_meshes(self._root))
-                make_way(name, "scenario", [os.path.join(self._folder, mesh) for mesh in files_of(self._root)]
-                         + [mesh.path for mesh in meshes], force)
-                for mesh in meshes:
-                    _put_beside(name, mesh)
+            beside = {str(mesh): mesh.path for mesh in named_meshes(self._root)} | files_below(self._root, self._folder)
+            is_there = _holds(name, text.encode())
+            if not is_there:
+                make_way(name, "scenario", [os.path.join(self._folder, path) for path in files_of(self._root)]
+                         + list(beside.values()), force)
+            for path, source in beside.items():
+                _put_beside(name, path, source)
+            if not is_there:
                 _core.write_file(name, text.encode())
         return text
 

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from ._mujoco_parts import Parts
 
 _CONNECT, _WELD, _JOINT, _TENDON = range(4)
-_AT_A_LIMIT = 1e-6   # rad or m, of a start at a limit that was computed
+_AT_A_LIMIT = 1e-9   # rad or m, as a scenario has it for a start at a limit
 _LIMITS = lost("joint", "joint limits are not kept", "limits=\"stop\" keeps them as springs")
-_LIMITS_AT_START = lost("joint", "limits are not kept at or beyond which a joint begins", "state by at= where the joint begins")
+_LIMITS_AT_START = lost("joint", "limits are not kept beyond which a joint begins", "state by at= where the joint begins")
 _LIMITS_ORDER = lost("joint", "limits are not kept whose lower is not below the upper")
 _SOFT_LIMITS = Loss("import-mended", "joint", "joints", "limits are springs here whose stiffness follows from the bodies (solref and solimp are not kept)")
 _BALL_LIMITS = lost("joint", "limits of ball joints beyond 170 degrees are not kept")
@@ -102,7 +102,7 @@ def _add_limits(p: Parts, j: int, table: Table) -> None:
     if not low < high:
         return p.losses.add(_LIMITS_ORDER, name)
     q = table["coordinate"]
-    kept = (low if q > low + _AT_A_LIMIT else -math.inf, high if q < high - _AT_A_LIMIT else math.inf)
+    kept = (low if q >= low - _AT_A_LIMIT else -math.inf, high if q <= high + _AT_A_LIMIT else math.inf)
     if not all(math.isfinite(x) for x in kept):
         p.losses.add(_LIMITS_AT_START, name)
     if any(math.isfinite(x) for x in kept):
@@ -117,7 +117,7 @@ def _add_ball_limit(p: Parts, j: int, table: Table) -> None:
     turned = 2 * math.atan2(float(np.linalg.norm(q[1:])), abs(float(q[0])))
     if not 0 < most <= _FARTHEST:
         return p.losses.add(_BALL_LIMITS, name)
-    if turned > most - _AT_A_LIMIT:
+    if turned > most + _AT_A_LIMIT:
         return p.losses.add(_LIMITS_AT_START, name)
     p.losses.add(_SOFT_LIMITS, name)
     del table["at"]

@@ -76,6 +76,17 @@ class PlacedBody(NamedTuple):
     """rad/s, world axes, shape (3,); nan for a point mass."""
 
 
+class PlacedPoint(NamedTuple):
+    """A named point in a state. It has no axes: an orientation is that of its body."""
+
+    name: str
+    """Its name in the model."""
+    position: Floats
+    """m, world, shape (3,)."""
+    velocity: Floats
+    """m/s, world, shape (3,)."""
+
+
 class PlacedJoint(_Coordinates):
     """A joint in a state; its coordinates and their rates (``angle``, rad, ``angle_rate``, rad/s) are attributes."""
 
@@ -93,7 +104,7 @@ class PlacedJoint(_Coordinates):
 class MechanismState:
     """A mechanism in one state, and what follows from it; made by :meth:`Model.at`. Nothing is solved in time.
 
-    Bodies and joints by name: ``state["tool"].position``, ``state["elbow"].angle``. Rows and columns of all forces and
+    Bodies, joints and points by name: ``state["tool"].position``, ``state["elbow"].angle``. Rows and columns of all forces and
     matrices are in the order of ``state.coordinates.v``: n rates, with forces in N along displacements and N m along
     angles.
 
@@ -152,15 +163,22 @@ class MechanismState:
             return PlacedJoint(found[i][0], values)
         return Parts("joint", [name for name, _ in found], made)
 
+    @property
+    def points(self) -> Parts[PlacedPoint]:
+        """All named points by name."""
+        found = self._state.points
+        return Parts("point", [name for name, _, _ in found], lambda i: PlacedPoint(*found[i]))
+
     def __getitem__(self, name: str | Entry) -> Any:
-        """The body or joint of that name."""
+        """The body, joint or point of that name."""
         name = name.name if isinstance(name, Entry) else name
-        bodies, joints = self.bodies, self.joints
-        if name in list(bodies) and name in list(joints):
-            raise KeyError(f"'{name}' is a body and a joint; write .bodies['{name}'] or .joints['{name}']")
-        if name not in list(bodies) and name not in list(joints):
-            raise unknown_name("body or joint", name, [*bodies, *joints])
-        return bodies[name] if name in list(bodies) else joints[name]
+        kinds: dict[str, Parts[Any]] = {"bodies": self.bodies, "joints": self.joints, "points": self.points}
+        ways = [kind for kind, parts in kinds.items() if name in list(parts)]
+        if len(ways) > 1:
+            raise KeyError(f"'{name}' is one of several; write " + " or ".join(f".{kind}['{name}']" for kind in ways))
+        if not ways:
+            raise unknown_name("body, joint or point", name, [other for parts in kinds.values() for other in parts])
+        return kinds[ways[0]][name]
 
     @property
     def kinetic(self) -> float:
@@ -292,7 +310,7 @@ def _vector(value: Any, n: int, path: str, unit: str = "") -> list[float]:
 
 
 def _unit(name: str) -> str:
-    return "rad" if name.endswith(".angle") else "m"
+    return "rad" if name.rpartition(".")[2].startswith("angle") else "m"
 
 
 def _quaternion(model: Model, name: str, value: Any) -> tuple[str, list[float]]:
@@ -430,7 +448,7 @@ def reach(m: Model, tool: str | Body | Point, pose: Any, *, point: Vector | None
         tool: A body, or a point of the model by its name.
         pose: Position, m, world, shape (3,); or a pair (position, rotation).
         point: In coordinates of the body, m. Default: its reference point.
-        rotation: Orientation of the body: a Rotation of SciPy, a rotation matrix (3, 3), or a quaternion (w, x, y, z).
+        rotation: Orientation of the body (also where a point is to get there): a Rotation of SciPy, a rotation matrix (3, 3), or a quaternion (w, x, y, z).
             Default: none is wanted.
         start: Where to start from, as ``q`` of :meth:`Model.at`. Default: as the bodies are placed.
 

@@ -100,6 +100,24 @@ nb::object bodies_of(const GeneralisedState& at)
     return array(std::move(all), {at.state().X.size(), 13});
 }
 
+/// [(point, position, velocity), ..] of named points, world axes.
+nb::list points_of(const GeneralisedState& at)
+{
+    const auto numbers = [](const Vector3& v) { return array(Numbers(v.a, v.a + 3), {3}); };
+    nb::list all;
+    for (const NamedPoint& point : at.model().points()) {
+        Vector3 position = point.position, velocity{};
+        if (point.body != world) {
+            const auto b = static_cast<std::size_t>(point.body);
+            const Matrix34 &X = at.state().X[b], &V = at.state().V[b];
+            position = X.column(0) + directors(X) * point.position;
+            velocity = V.column(0) + directors(V) * point.position;
+        }
+        all.append(nb::make_tuple(point.name, numbers(position), numbers(velocity)));
+    }
+    return all;
+}
+
 /// [(joint, [(coordinate, value, rate, as it is placed), ..]), ..], angles with their turns.
 nb::list joints_of(const GeneralisedState& at)
 {
@@ -178,6 +196,7 @@ void add_states(nb::module_& m)
         .def_prop_ro("t", [](const GeneralisedState& at) { return at.state().t; })
         .def_prop_ro("bodies", &bodies_of)
         .def_prop_ro("joints", &joints_of)
+        .def_prop_ro("points", &points_of)
         .def_prop_ro("mass_matrix",
                      [](const GeneralisedState& at) {
                          const std::size_t n = at.rates().size();

@@ -11,10 +11,10 @@ import pytest
 
 import livens as lv
 
-LINK = '<link name="{}"><inertial><origin xyz="0.1 0 0"/><mass value="1"/><inertia ixx="0.01" iyy="0.02" izz="0.02"/></inertial></link>'
+LINK = '<link name="{}"><inertial><origin xyz="0.1 0 0"/><mass value="1"/><inertia ixx="0.01" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial></link>'
 ARM = """<robot name="arm">
   <link name="base"/>
-  <link name="rod"><inertial><origin xyz="0.5 0 0"/><mass value="2"/><inertia ixx="0.001" iyy="0.17" izz="0.17"/></inertial></link>
+  <link name="rod"><inertial><origin xyz="0.5 0 0"/><mass value="2"/><inertia ixx="0.001" iyy="0.17" izz="0.17" ixy="0" ixz="0" iyz="0"/></inertial></link>
   <joint name="hinge" type="revolute"><parent link="base"/><child link="rod"/><axis xyz="0 1 0"/><dynamics damping="0.1"/>
     <limit lower="-1" upper="1" effort="10" velocity="2"/></joint>
 </robot>
@@ -85,6 +85,35 @@ def test_a_joint_that_mimics_follows(tmp_path: pathlib.Path, first: str, second:
                     for name, kind in (("lead", first), ("follow", second)))
     assert np.abs(follow - (0.5 - 2 * lead)).max() < 1e-12
     assert np.ptp(lead) > 0.1   # it moves
+
+
+def test_merged_links_are_points_of_the_motion_of_states_and_of_inverse_kinematics(tmp_path: pathlib.Path) -> None:
+    tool = ('<link name="flange"/><link name="tool"/><joint name="f" type="fixed"><origin xyz="1 0 0" rpy="0 0 1"/><parent link="rod"/>'
+            '<child link="flange"/></joint><joint name="t" type="fixed"><origin xyz="0 0 0.2"/><parent link="flange"/><child link="tool"/></joint>')
+    file = write(tmp_path, ARM.replace("</robot>", tool + "</robot>"))
+    m = lv.from_urdf(file, at={"hinge": 0.3}, rates={"hinge": 2})
+    c, s = np.cos(0.3), np.sin(0.3)
+    assert list(m.points) == ["base", "flange", "tool"] and m["tool"].body == "rod"
+    place = [c + 0.2 * s, 0, -s + 0.2 * c]
+    state = m.at(v={"hinge.angle": 2})
+    assert state["tool"].position == pytest.approx(place, abs=1e-15)
+    assert state["tool"].velocity == pytest.approx([2 * place[2], 0, -2 * place[0]], abs=1e-15)
+    assert state["base"].position.tolist() == [0, 0, 0] and state.points["base"].velocity.tolist() == [0, 0, 0]
+    assert (state.jacobian("tool") @ state.v)[:3] == pytest.approx(state["tool"].velocity, abs=1e-15)
+    sol = lv.solve(m, 0.1)
+    assert sol["tool"].position[0] == pytest.approx(place, abs=1e-12)
+    assert sol["tool"].velocity[0] == pytest.approx(state["tool"].velocity, abs=1e-12)
+    q = lv.reach(m, "tool", (np.cos(0.5) + 0.2 * np.sin(0.5), 0, -np.sin(0.5) + 0.2 * np.cos(0.5)))
+    assert q["hinge.angle"] == pytest.approx(0.5, abs=1e-9)
+    with pytest.raises(KeyError, match="tool"):
+        state["tol"]
+
+
+def test_a_joint_may_begin_at_its_limit(tmp_path: pathlib.Path) -> None:
+    m = lv.from_urdf(write(tmp_path, ARM.replace('lower="-1"', 'lower="0"')), strict=True)
+    assert list(m["hinge"].limits) == [0, 1]
+    sol = lv.solve(lv.from_urdf(write(tmp_path, ARM.replace('lower="-1" upper="1"', 'lower="-1" upper="0"'))), 1)
+    assert sol.success and sol.peak("hinge.angle").value < 0.01   # gravity presses it on
 
 
 def test_two_slides_are_coupled_without_a_mass_between(tmp_path: pathlib.Path) -> None:

@@ -110,3 +110,47 @@ def test_of_other_formats_are_read_by_trimesh(box: pathlib.Path, tmp_path: pathl
     trimesh.load(box, force="mesh").export(file)
     m = of(lv.mesh(file, unit="m", density=1))
     assert mass(m) == pytest.approx(6, rel=1e-7)
+
+
+def test_files_that_a_model_names_go_with_its_scenario(tmp_path: pathlib.Path) -> None:
+    """By a folder of their own, from a scenario and out of a URDF; results are the same bytes."""
+    near, far = tmp_path / "near", tmp_path / "far"
+    (near / "meshes").mkdir(parents=True)
+    (near / "meshes/box.obj").write_text(BOX)
+    (near / "part.toml").write_text('format = 1\n[[body]]\nname = "p"\nmass = 1\ninertia = [1, 1, 1]\nposition = [9, 0, 0]\n'
+                                    'visual = { mesh = "meshes/box.obj", unit = "m" }\n')
+    text = ('format = 1\n[[include]]\nfile = "part.toml"\n[[body]]\nname = "b"\nshape = { mesh = "meshes/box.obj", unit = "m" }\n'
+            'density = 2\nangular_velocity = [1, 2, 0]\n[time]\nend = 0.1\n')
+    (near / "one.toml").write_text(text)
+    m = lv.load(near / "one.toml")
+    assert m.to_toml(far / "one.toml") == text
+    assert sorted(p.name for p in far.rglob("*") if p.is_file()) == ["box.obj", "one.toml", "part.toml"]
+    again = lv.load(far / "one.toml")
+    lv.solve(m).save(tmp_path / "a.nc")
+    lv.solve(again).save(tmp_path / "b.nc")
+    assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
+    m.to_toml(far / "one.toml")   # all is there
+    (far / "meshes/box.obj").write_text("else")
+    with pytest.raises(FileExistsError, match="would replace one of other content"):
+        m.to_toml(far / "one.toml")
+    assert (near / "meshes/box.obj").read_text() == BOX
+
+
+def test_meshes_of_packages_go_with_the_scenario_of_a_robot(tmp_path: pathlib.Path) -> None:
+    package, robot, far = tmp_path / "package", tmp_path / "robot", tmp_path / "far"
+    package.mkdir()
+    robot.mkdir()
+    (package / "box.obj").write_text(BOX)
+    (robot / "r.urdf").write_text(
+        '<robot name="r"><link name="w"/><link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+        '</inertial><visual><geometry><mesh filename="package://p/box.obj"/></geometry></visual></link>'
+        '<joint name="j" type="continuous"><parent link="w"/><child link="a"/></joint></robot>')
+    m = lv.from_urdf(robot / "r.urdf", packages={"p": package}, rates={"j": 1})
+    m.time.end = 0.1
+    m.to_toml(far / "r.toml")
+    assert (far / "package/box.obj").read_text() == BOX
+    lv.solve(m).save(tmp_path / "a.nc")
+    lv.solve(lv.load(far / "r.toml")).save(tmp_path / "b.nc")
+    assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
+    m.to_toml(tmp_path / "r.toml")   # meshes are where the text has them
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a.nc", "b.nc", "far", "package", "r.toml", "robot"]

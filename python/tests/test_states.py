@@ -388,3 +388,13 @@ def test_shafts_of_constant_velocity_are_told_by_their_bodies() -> None:
     with pytest.raises(lv.InputError, match="coordinates-missing") as caught:
         m.at()
     assert "'rod'" in str(caught.value)
+
+
+def test_angles_of_a_ball_joint_take_units_and_say_where_they_end() -> None:
+    m = lv.Model("ball")
+    m.add_body("a", mass=1, inertia=(0.1, 0.1, 0.1))
+    m.add_spherical("b", "world", "a", at=(0, 0, 0), angles="zyx")
+    state = m.at({"b.angle_2": "30 deg"}, {"b.angle_2": "10 deg/s"})
+    assert state["b"].coordinates["angle_2"] == pytest.approx(np.pi / 6) and state["b"].coordinates["angle_2_rate"] == pytest.approx(np.pi / 18)
+    with pytest.raises(lv.InputError, match="three angles of a ball joint"):
+        m.at({"b.angle_2": "90 deg"})

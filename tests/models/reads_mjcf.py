@@ -239,7 +239,7 @@ class Tells(unittest.TestCase):
         sol = lv.solve(m, 0.01)
         self.assertAlmostEqual(sol.sensors["s"].rotation_angle[0], 0.2, delta=1e-12)
         self.assertAlmostEqual(m["p"].limit, 0.7, delta=1e-12)
-        for most, word in ((0.1, "limits are not kept at or beyond which a joint begins"), (3.1, "limits of ball joints beyond 170 degrees are not kept")):
+        for most, word in ((0.1, "limits are not kept beyond which a joint begins"), (3.1, "limits of ball joints beyond 170 degrees are not kept")):
             m = self.made(ball(most), qpos=[np.cos(0.1), np.sin(0.1), 0, 0])
             self.assertIn("1 joint ('p')", losses(m)["import-lost", word])
             self.assertIsNone(m["p"].limit)
@@ -247,8 +247,11 @@ class Tells(unittest.TestCase):
     def test_limits_are_kept_left_out_or_told(self):
         bodies = arm(HINGED.format("p", "0 1 0", "range='-1 1'"), HINGED.format("q", "0 1 0", "range='0 2'"))
         m = self.made(bodies)
+        self.assertEqual((list(m["p"].limits), list(m["q"].limits)), ([-1, 1], [0, 2]))   # where it begins is no loss
+        self.assertNotIn("beyond which", str(losses(m)))
+        m = self.made(bodies, at={"q": -2e-9})
         self.assertEqual((list(m["p"].limits), list(m["q"].limits)), ([-1, 1], [-np.inf, 2]))
-        self.assertIn("1 joint ('q')", losses(m)["import-lost", "limits are not kept at or beyond which a joint begins"])
+        self.assertIn("1 joint ('q')", losses(m)["import-lost", "limits are not kept beyond which a joint begins"])
         self.assertNotIn("limits", self.made(bodies, limits="ignore").to_toml())
         self.refused("unknown-choice", lambda: self.made(bodies, limits="none"))
 

@@ -234,6 +234,37 @@ TEST(Cams, WhatNoLawIsGetsOneErrorEach)
     begins("coordinates = [0, 1], values = [\"0 deg\", \"1 deg\"]", "unit");
 }
 
+/// Not where the bodies are placed, if coordinates lead them to another start.
+TEST(Cams, ALawIsJudgedWhereTheMotionBegins)
+{
+    const auto started = [](const std::string& law, double value, const std::string& more = "") {
+        return parse_scenario("format = 1\n" + machine(law, 0, 0, 0) +
+                                  "[[start.coordinates]]\njoint = \"lead\"\nvalue = " + to_text(value) +
+                                  "\n" + more + "[time]\nend = 0.1\n",
+                              "test.toml");
+    };
+    const std::string rises = "coordinates = [1, 2, 3, 4], values = [0, 0.1, 0.2, 0.1]",
+                      grows = "expression = \"log(angle)\"";
+    for (const auto& [law, value, follower] :
+         {std::tuple(rises, 2.0, 0.1), {rises, 1.0, 0.0}, {rises, 4.0, 0.1}, {grows, 2.0, std::log(2.0)}}) {
+        const ScenarioResult read = started(law, value, "rate = 0.5\n");
+        ASSERT_TRUE(read.scenario) << law << read.diagnostics.at(0).message;
+        const State start = read.scenario->model.start();
+        EXPECT_NEAR(start.X[0](1, 1), std::sin(value), 1e-12) << "the value that was wanted";
+        EXPECT_NEAR(start.X[1](0, 0), 3 + follower, 1e-9) << law;
+        EXPECT_NEAR(angular_velocity(start.X[0], start.V[0])[2], 0.5, 1e-12);
+    }
+    for (const double value : {0.5, 5.0}) {
+        const ScenarioResult outside = started(rises, value);
+        ASSERT_EQ(outside.diagnostics.size(), 1u);
+        EXPECT_EQ(outside.diagnostics[0].code, "coupling-range") << outside.diagnostics[0].message;
+        EXPECT_NE(outside.diagnostics[0].message.find(value < 1 ? "by 0.5 rad" : "by 1 rad"),
+                  std::string::npos)
+            << outside.diagnostics[0].message;
+    }
+    EXPECT_EQ(started(grows, -0.5).diagnostics.at(0).code, "coupling-law");
+}
+
 TEST(Cams, OneCoordinateIsNotOnBothSides)
 {
     for (const auto& [of, code] : {std::pair{"slide.displacement", "coupling-terms"},

@@ -215,6 +215,30 @@ TEST(Laws, ABushingThatReachesHalfATurnIsNamed)
     EXPECT_EQ(run(3, "").status, SolveStatus::converged) << "by 3 sin(1) = 2.52 rad";
 }
 
+/// A bushing that does nothing along its rotation vector has no turn at which it ends.
+TEST(Laws, ABushingThatDampsTheAngularVelocityAloneTurnsOn)
+{
+    const auto run = [](const std::string& rotational) {
+        const ScenarioResult read = parse_scenario(
+            "format = 1\n[[body]]\nname = \"b\"\nmass = 1\ninertia = [0.1, 0.1, 0.1]\nangular_velocity = "
+            "[0, 4, 0]\n[[load]]\nname = \"bush\"\ntype = \"bushing\"\nbetween = [\"world\", \"b\"]\nat = "
+            "[0, 0, "
+            "0]\ndamping = [0, 0, 0, 0.01, 0.01, 0.01]\n" +
+                rotational + "damping_by = \"angular_velocity\"\n[time]\nend = 2\naccuracy = 1e-9\n",
+            "test.toml");
+        const Scenario& s = read.scenario.value();
+        return solve(s.model, {s.model.start()}, s.time, s.method, s.options);
+    };
+    const Solution free = run("stiffness = [10, 10, 10, 0, 0, 0]\n");
+    EXPECT_EQ(free.report.status, SolveStatus::converged) << free.report.message;
+    const State end = free.motion.at(2);
+    EXPECT_NEAR(angular_velocity(end.X[0], end.V[0])[1], 4 * std::exp(-0.2), 1e-9);
+    for (const std::string held : {"stiffness = [10, 10, 10, 0, 1e-5, 0]\n",
+                                   "stiffness = [10, 10, 10, 0, 0, 0]\npreload = [0, 0, 0, 0, 1e-5, 0]\n"})
+        EXPECT_NE(run(held).report.message.find("bushing 'bush' reaches half a turn"), std::string::npos)
+            << held;
+}
+
 TEST(Laws, ABushingTurnsHarmonicallyHoweverFar)
 {
     // About one axis the rotation vector is the angle itself, so that 2 rad are no more than 0.02.

@@ -99,6 +99,25 @@ class HostileImport(ProgramTest):
             told = self.refused(f'<!DOCTYPE r [<!ENTITY x {kind} "file://{secret}">]>\n' + ARM.replace('"arm"', '"&x;"'))
             self.assertNotIn("do not show", told)
 
+    def test_meshes_go_with_the_scenario(self):
+        mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+        visual = "<visual><geometry><mesh filename='package://p/m/a.obj'/></geometry></visual></link>"
+        (self.folder / "p/m").mkdir(parents=True)
+        (self.folder / "far").mkdir()
+        (self.folder / "p/m/a.obj").write_text(mesh)
+        (self.folder / "arm.urdf").write_text(ARM.replace("</inertial></link>", "</inertial>" + visual))
+        for output, copied in (("near.toml", []), ("far/arm.toml", ["far/p/m/a.obj"])):
+            self.run_program("import", "arm.urdf", "-o", output, "--package", "p=p", "--quiet")
+            self.assertIn('mesh = "p/m/a.obj"', (self.folder / output).read_text())
+            self.run_program("check", output)
+            self.assertEqual([str(x.relative_to(self.folder)) for x in self.folder.glob("far/**/*.obj")], copied)
+        (self.folder / "far/p/m/a.obj").write_text("else")
+        ran = self.run_program("import", "arm.urdf", "-o", "far/arm.toml", "--package", "p=p", code=IO)
+        self.assertIn("a file of other content is there", ran.stderr)
+        self.run_program("import", "arm.urdf", "-o", "far/arm.toml", "--package", "p=p", "--force", "--quiet")
+        self.assertEqual((self.folder / "far/p/m/a.obj").read_text(), mesh)
+        self.assertEqual((self.folder / "p/m/a.obj").read_text(), mesh)
+
     def test_a_large_file_is_refused_by_its_size(self):
         def limit():
             if not SANITIZED:

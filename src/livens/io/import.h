@@ -35,14 +35,14 @@ struct UrdfOptions {
     std::vector<UrdfLoop> loops;
     bool is_strict = false;   ///< what is lost and changes the motion is an error
     double end = 1;           ///< s; `end` of the scenario's `[time]`
-    /// Where the scenario will lie, whose meshes are at or below it. None: the nearest folder above all of
-    /// them.
+    /// Where the scenario will lie. If not all its meshes are at or below it, or none is given, paths begin
+    /// in the nearest folder above the file and all of them.
     std::optional<std::filesystem::path> folder;
 };
 
 struct UrdfResult : ScenarioResult {
     std::string toml;               ///< the scenario as a file; empty after an error
-    std::filesystem::path folder;   ///< where its meshes begin
+    std::filesystem::path folder;   ///< where paths of its meshes begin: they go with it from there
 };
 
 /// Reads a URDF strictly: each tag is taken, refused, or listed with the codes `import-lost` (not kept),

@@ -79,7 +79,7 @@ std::vector<QuantitySeries> usual_series(const Quantities& quantities)
     std::vector<QuantitySeries> all;
     for (const NamedQuantity& q : quantities.all())
         if (q.of != QuantityOf::body && q.of != QuantityOf::model && !q.is_repeated && !q.is_on_request &&
-            q.what != "limit_stiffness")
+            !q.what.starts_with("limit_"))
             all.push_back({q});
     for (const NamedQuantity& q : quantities.all())
         if (q.of == QuantityOf::model) all.push_back({q});

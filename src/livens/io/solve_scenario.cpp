@@ -73,10 +73,15 @@ void tell_limits(const Scenario& scenario, Run& run)
         const Load& load = loads[static_cast<std::size_t>(series[i].quantity.index)];
         const Extreme& most = found[i].largest;
         if (!(most.value > 0)) continue;
-        const auto stiffness = std::ranges::find(load.readings, "limit_stiffness", &LoadReading::name);
+        std::string law;   // "100 N/m and damping 0.3 s/m"
+        for (const char* name : {"limit_stiffness", "limit_damping"}) {
+            const auto number = std::ranges::find(load.readings, name, &LoadReading::name);
+            law += (law.empty() ? "" : " and damping ") + to_text(number->value(LoadArguments()), 4) + " " +
+                   number->unit;
+        }
         run.notes.push_back("'" + load.name + "' was beyond its limits by " + to_text(most.value, 4) + " " +
                             found[i].unit + " at most, at " + to_text(most.t, 6) + " s; its springs have " +
-                            to_text(stiffness->value(LoadArguments()), 4) + " " + stiffness->unit);
+                            law);
     }
 }
 

@@ -170,8 +170,8 @@ Joint coupling(const std::string& name, const std::vector<CoupledJoint>& terms, 
                double length = 1);
 /// sum_k factor_k coordinate_k = law(coordinate of `of`), whose factor does not count: cams, levers, what no
 /// sum says. One term is enough. Coordinates are what their joints call them, so that the start need not
-/// fulfil it. Also throws InputError `coupling-terms` for a coordinate on both sides, `coupling-law` for a
-/// law that positions do not tell, and `coupling-range` for a start outside of it.
+/// fulfil it, and the law is judged where a motion begins: consistent_start(). Also throws InputError
+/// `coupling-terms` for a coordinate on both sides, and `coupling-law` for a law that positions do not tell.
 Joint coupling(const std::string& name, const std::vector<CoupledJoint>& terms, const CoupledJoint& of,
                const CoordinateLaw& law, const Configurations& X, double length = 1);
 

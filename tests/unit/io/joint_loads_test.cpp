@@ -223,7 +223,7 @@ TEST(JointLimits, AreToldWhereTheyAreReached)
 {
     const auto notes = [](const std::string& limits) {
         const ScenarioResult result =
-            read(held("revolute", "limits = " + limits + "\nlimit_stiffness = 5000"));
+            read(held("revolute", "limits = " + limits + "\nlimit_stiffness = 5000\nlimit_damping = 0.3"));
         EXPECT_TRUE(result.scenario.has_value()) << shown(result);
         const Scenario& scenario = *result.scenario;
         const livens::Run run = judged_run(scenario, solve_scenario(scenario, scenario.options, nullptr), {});
@@ -234,7 +234,7 @@ TEST(JointLimits, AreToldWhereTheyAreReached)
     const std::string reached = notes("[-0.4, inf]");
     EXPECT_EQ(notes("[\"-0.4 rad\", \"inf\"]"), notes("[-0.4, inf]"));
     EXPECT_NE(reached.find("'j' was beyond its limits by "), std::string::npos) << reached;
-    EXPECT_NE(reached.find("5000 N m/rad"), std::string::npos) << reached;
+    EXPECT_NE(reached.find("5000 N m/rad and damping 0.3 s/rad"), std::string::npos) << reached;
     EXPECT_EQ(notes("[-4, 4]").find("limits"), std::string::npos);
 }
 

@@ -171,6 +171,14 @@ TEST(Mistakes, SyntaxErrorsPointAtTheCause)
         EXPECT_EQ(result.diagnostics[0].line, 2) << shown(result);
         EXPECT_EQ(result.diagnostics[0].column, column) << shown(result);
     }
+    for (const std::string line :
+         {R"(x = { "s.angle" = 1, "s.angle" = 2 })", R"(x = { 's.angle' = 1, "s.angle"=2 })",
+          "[x]\n\"s.angle\" = 1\n\"s.angle\" = 2"}) {
+        const ScenarioResult twice = read("format = 1\n" + line + "\n");
+        ASSERT_EQ(twice.diagnostics.size(), 1u) << line;
+        EXPECT_EQ(twice.diagnostics[0].message, "'s.angle' is given a second time") << shown(twice);
+        EXPECT_EQ(twice.diagnostics[0].length, 9) << shown(twice);
+    }
     const ScenarioResult unit = read("mass = 5 kg\n");
     EXPECT_NE(unit.diagnostics[0].help.find("quotes"), std::string::npos);
     const ScenarioResult brackets = read("format = 1\n[body]\nname = \"a\"\n");

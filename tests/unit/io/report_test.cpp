@@ -164,6 +164,30 @@ elements = 6
     EXPECT_GT(std::stod(found(page_of(100), "loss")), 0.01) << "and told";
 }
 
+/// In a free fall joints bear nothing but last digits, which no polynomial follows and nobody wants to see.
+TEST_F(Report, SeriesOfRoundingAreNotFollowed)
+{
+    std::string text = "format = 1\ngravity = [0, 0, -9.81]\n";
+    const auto number = [](double x) { return std::to_string(x); };
+    for (int k = 0; k < 6; ++k)
+        text += "[[body]]\nname = \"b" + std::to_string(k) + "\"\nmass = " + number(1.0 / (k + 1)) +
+                "\ninertia = [0.01, 0.02, 0.03]\ncenter_of_mass = [0.1, 0.02, 0]\nposition = [" +
+                number(0.3 * k) + ", " + number(0.1 * k * k) + ", 0]\nrotation_vector = [0.3, " +
+                number(0.2 * k) + ", 1]\n";
+    for (int k = 0; k < 5; ++k)
+        text += "[[joint]]\ntype = \"revolute\"\nbetween = [\"b" + std::to_string(k) + "\", \"b" +
+                std::to_string(k + 1) + "\"]\nat = [" + number(0.3 * k + 0.3) + ", 0, 0]\naxis = [" +
+                std::to_string(k % 2) + ", 1, 0.5]\nstiffness = 1e3\ndamping = 10\n";
+    text += "[time]\nend = 0.3\nelements = 6\n[method]\nfamily = \"radau\"\ndegree = 5\n";
+    const Scenario fall = parse_scenario(text, "fall.toml").scenario.value();
+    const Solution solution = solve(fall.model, {fall.conditions}, fall.time, fall.method, fall.options);
+    const RunFile run = make_run(fall.model, solution, fall.method);
+    const std::string page = report_page(ReportInput{fall, run, "fall"}, nullptr, {8e6}),
+                      key = "\"curve_end\": [\"f8\", ";
+    EXPECT_EQ(std::stoul(page.substr(page.find(key) + key.size())), run.motion.mesh.ends.size());
+    EXPECT_EQ(found(page, "loss"), "0");
+}
+
 TEST_F(Report, OneOrTwoRuns)
 {
     const ReportInput input{scenario_, run_, "pendulum"};

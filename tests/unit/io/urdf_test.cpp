@@ -172,14 +172,100 @@ TEST(Urdf, LimitsThatCannotActAreToldOrLeftOutAsAsked)
     none.limits = Options::Limits::ignore;
     lost(none, arm(), "joint limits are not kept: 1 joint ('shoulder')");
     beyond.at = {{"shoulder", 1.01}};
-    const std::string at_start =
-        "limits are not kept at or beyond which a joint begins: 1 joint ('shoulder')";
+    const std::string at_start = "limits are not kept beyond which a joint begins: 1 joint ('shoulder')";
     lost(beyond, arm(), at_start, "limits = [-1.0, inf]");
-    beyond.at = {{"shoulder", -1}};
+    beyond.at = {{"shoulder", -1 - 2e-9}};
     lost(beyond, arm(), at_start, "limits = [-inf, 1.0]");
     std::string text = arm();
     text.replace(text.find("lower='-1'"), 10, "lower='1' ");
     lost({}, text, "limits are not kept whose lower is not below the upper: 1 joint ('shoulder')");
+}
+
+TEST(Urdf, LimitsAtWhichAJointBeginsAreKept)
+{
+    for (const double at : {-1.0, 1.0, -1 - 0.9e-9, 1 + 0.9e-9}) {
+        Options options;
+        options.at = {{"shoulder", at}};
+        const UrdfResult result = read_robot(arm(), options);
+        EXPECT_NE(result.toml.find("limits = [-1.0, 1.0]"), std::string::npos) << told(result);
+        EXPECT_EQ(n_told(result, "import-lost", "a joint begins"), 0) << told(result);
+        const ScenarioResult again = parse_scenario(result.toml, "robot.toml");
+        EXPECT_TRUE(again.scenario) << test::shown(again);
+    }
+}
+
+TEST(Urdf, LinksThatAreNoBodiesArePointsOfTheBodyOrOfTheWorld)
+{
+    const std::string quarter = "<origin xyz='0.3 0 0' rpy='0 0 1.5707963267948966'/>";
+    Options options;
+    options.at = {{"shoulder", 0.5}};
+    const UrdfResult result = read_robot(
+        arm(link("flange", "") + link("tool", "") + joint("f", "fixed", "hand", "flange", quarter) +
+            joint("t", "fixed", "flange", "tool", "<origin xyz='0.2 0 0'/>") + link("mast", "") +
+            joint("m", "fixed", "base", "mast", "<origin xyz='0 0 2'/>") + link("world", "") +
+            joint("w", "fixed", "base", "world")),
+        options);
+    ASSERT_TRUE(result.scenario) << told(result);
+    const Model& model = result.scenario->model;
+    const auto point = [&](const std::string& name) {
+        for (const NamedPoint& p : model.points())
+            if (p.name == name) return p;
+        throw std::out_of_range(name);
+    };
+    ASSERT_EQ(model.points().size(), 4u) << "a point cannot be called 'world'";
+    EXPECT_EQ(model.body_name(point("flange").body), "hand");
+    EXPECT_LT(norm(point("flange").position - Vector3{0.3, 0, 0}), 1e-15);
+    EXPECT_EQ(model.body_name(point("tool").body), "hand");
+    EXPECT_LT(norm(point("tool").position - Vector3{0.3, 0.2, 0}), 1e-15);
+    EXPECT_EQ(point("mast").body, world);
+    EXPECT_LT(norm(point("mast").position - Vector3{0, 0, 2}), 1e-15);
+    EXPECT_EQ(point("base").position, Vector3{});
+    EXPECT_NE(result.toml.find("[[point]]"), std::string::npos);
+    EXPECT_EQ(n_told(result, "import-merged", "kept as points, without axes: 2 links ('flange', 'tool')"), 1)
+        << told(result);
+}
+
+TEST(Urdf, WhatJointsWithoutACoordinateLoseIsTold)
+{
+    const std::string terms = "<dynamics damping='5'/><limit lower='-1' upper='1' effort='2' velocity='3'/>";
+    for (const std::string type : {"floating", "planar", "continuous", "spherical"}) {
+        const std::string text =
+            robot(link("base", "") + link("arm") + joint("j", type, "base", "arm", terms));
+        const UrdfResult result = read_robot(text);
+        ASSERT_TRUE(result.scenario) << told(result);
+        const int damping = type == "floating" || type == "planar" ? 1 : 0;
+        const auto lost = [&](const UrdfResult& in, const std::string& words) {
+            return n_told(in, "import-lost", words + ": 1 joint ('j')");
+        };
+        EXPECT_EQ(lost(result, "damping of planar and floating joints is not kept"), damping) << told(result);
+        EXPECT_EQ(lost(result, "limits are not kept of joints that are neither revolute nor prismatic"), 1)
+            << told(result);
+        EXPECT_EQ(lost(result, "effort and velocity limits are not kept"), 1) << told(result);
+        EXPECT_EQ(result.scenario->model.loads().size(), damping == 1 ? 0u : 1u) << type;
+        Options strict;
+        strict.is_strict = true;
+        const UrdfResult refused = read_robot(text, strict);
+        EXPECT_FALSE(refused.scenario) << type;
+        EXPECT_EQ(lost(refused, "limits are not kept of joints that are neither revolute nor prismatic"), 1);
+    }
+}
+
+TEST(Urdf, InertiasHaveAllTheirMoments)
+{
+    const auto with = [](const std::string& moments) {
+        return read_robot(robot(link("base", "") + link("arm", inertial("0 0 0", 1, moments)) +
+                                joint("j", "continuous", "base", "arm")));
+    };
+    EXPECT_TRUE(with("ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'").diagnostics.size() < 2);
+    const UrdfResult less = with("ixx='1' iyy='1'");
+    EXPECT_FALSE(less.scenario);
+    EXPECT_EQ(n_told(less, "urdf-tag", "<inertia> of 'arm' needs the attribute 'izz'"), 1) << told(less);
+    const UrdfResult products = with("ixx='1' iyy='1' izz='1' ixz='0'");
+    EXPECT_TRUE(products.scenario);
+    EXPECT_EQ(n_told(products, "import-mended",
+                     "products of inertia that are not stated are taken as 0: 1 link ('arm')"),
+              1)
+        << told(products);
 }
 
 TEST(Urdf, LinksThatFixedJointsHoldAreOneBodyWithTheExactSumOfTheirMasses)
@@ -443,8 +529,12 @@ TEST_F(UrdfMeshes, AreDrawnFromTheFolderAndPackagesThatWereNamedAndFromNowhereEl
     EXPECT_TRUE(is_drawn(with("package:///p/two.obj", named)));
     EXPECT_TRUE(is_drawn(with("../two.obj", named)));
     EXPECT_EQ(n_told(with("package://p/../../etc/two.obj", named), "import-lost", "outside"), 1);
-    named.folder = folder_ / "robot";   // where the scenario goes
-    EXPECT_EQ(n_told(with("package://p/two.obj", named), "import-lost", "outside"), 1);
+    named.folder = folder_ / "robot";   // where the scenario goes: meshes have to go there, too
+    const UrdfResult beside = with("package://p/two.obj", named);
+    EXPECT_TRUE(is_drawn(beside)) << told(beside);
+    EXPECT_EQ(beside.folder, std::filesystem::canonical(folder_));
+    named.folder = folder_.parent_path();
+    EXPECT_EQ(with("package://p/two.obj", named).folder, std::filesystem::canonical(folder_.parent_path()));
     std::error_code error;
     std::filesystem::create_symlink(folder_ / "two.obj", folder_ / "robot/link.obj", error);
     EXPECT_EQ(n_told(with("link.obj"), "import-lost", "outside"), error ? 0 : 1);

@@ -384,5 +384,40 @@ TEST(Bushing, IsDampedByTheRateOfItsVectorOrByTheAngularVelocity)
     }
 }
 
+/// What it tells is the couple that acts, which is -K r along K's own axes and for small turns only.
+TEST(Bushing, TellsTheCoupleThatActs)
+{
+    Random random(11);
+    const std::vector<Matrix34> start{world_configuration, world_configuration};
+    for (const double angle : {1e-9, 1e-3, 0.05, 0.19, 0.21, 1.4, 3.0})
+        for (const bool by_spin : {true, false}) {
+            Bushing law;
+            law.by_angular_velocity = by_spin;
+            for (int k = 0; k < 6; ++k) law.stiffness(k, k) = 1 + k, law.damping(k, k) = 0.3 * (6 - k);
+            law.stiffness(1, 4) = law.stiffness(4, 1) = 0.5;
+            law.preload[5] = 0.7;
+            const Load load = bushing("l", 0, {}, 1, {}, law, start);
+            const std::size_t first = load.bodies[0] == 0 ? 0 : 1, second = 1 - first;
+            LoadArguments at;
+            const Vector3 r = angle * random.unit();
+            Matrix34& X = at.X[second];
+            X = configuration(random.vector(), directors_from_rotation_vector(r));
+            at.V[second] = rate(X, random.vector(), random.vector());
+            std::map<std::string, double> told;
+            const auto couple = [&] {
+                for (const LoadReading& reading : load.readings) told[reading.name] = reading.value(at);
+                return Vector3{told["torque_x"], told["torque_y"], told["torque_z"]};
+            };
+            const LoadForces F = forces(load, at);
+            EXPECT_LT(norm(moment(X, F[second]) - couple()), 1e-12) << angle << by_spin;
+            EXPECT_LT(norm(F[second].column(0) - Vector3{told["force_x"], told["force_y"], told["force_z"]}),
+                      1e-13);
+            // What the law has along the rotation vector is something else once the turn is large.
+            const Vector3 along{-4 * r[0], -5 * r[1] - 0.5 * X(1, 0), -6 * r[2] - 0.7};
+            at.V[second] = Matrix34{};
+            EXPECT_EQ(norm(couple() - along) < 1e-6, angle < 1e-6) << angle;
+        }
+}
+
 }   // namespace
 }   // namespace livens

@@ -80,9 +80,29 @@ double close_at(const Mechanism& mechanism, const std::vector<int>& rows, std::s
     return never;
 }
 
+/// Whether it is one of a ball joint's three angles, two of which are one where the second is 90 degrees.
+bool is_of_three_angles(const Mechanism& mechanism, const std::string& name)
+{
+    for (const Joint& joint : mechanism.model.joints())
+        for (const NamedCoordinate& q : joint.coordinates)
+            if (joint.name + "." + q.name == name)
+                return q.coordinate.kind == CoordinateKind::outer_angle ||
+                       q.coordinate.kind == CoordinateKind::arc_sine;
+    return false;
+}
+
 Complaint why_singular(const Mechanism& mechanism, int coordinate)
 {
     const std::string name = coordinate < 0 ? "" : mechanism.coordinates[coordinate].name;
+    if (is_of_three_angles(mechanism, name))
+        return {"coordinates-singular",
+                "q[" + name + "]",
+                "'" + name + "' is one of three angles of a ball joint, of which two are one in this state",
+                "",
+                "",
+                "",
+                "keep the second angle away from 90 degrees, or take other 'angles' of the joint, such as "
+                "\"yxz\""};
     const std::string what =
         coordinate < 0
             ? "the joints hold less in this state than beside it: it is a singular position"

@@ -16,6 +16,7 @@
 #include "livens/dynamics/rows/rank.h"
 #include "livens/dynamics/rows/reach.h"
 #include "livens/dynamics/rows/rows.h"
+#include "livens/dynamics/start/laws_at_start.h"
 #include "livens/dynamics/start/rate_changes.h"
 #include "livens/dynamics/start/start_speeds.h"
 #include "livens/multibody/rotors.h"
@@ -345,6 +346,7 @@ TriedStart try_consistent_start(const Model& the_model, const State& start, Star
     const Model& model = now ? *now : the_model;
     Fault fault = clean(model, closed.start);
     if (!fault) fault = settle_directors(model, policy, closed.start, closed.notes);
+    if (!fault) fault = why_without_law(model, closed.start.X);
     if (!fault) fault = settle_positions(model, policy, closed.start, closed.notes);
     if (!fault) fault = why_in_other_branch(model, closed.start.X);
     if (fault) return {{}, std::move(*fault)};

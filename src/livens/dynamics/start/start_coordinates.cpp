@@ -16,6 +16,7 @@
 #include "livens/dynamics/rows/rank.h"
 #include "livens/dynamics/rows/rows.h"
 #include "livens/dynamics/start/free_directions.h"
+#include "livens/dynamics/start/laws_at_start.h"
 #include "livens/dynamics/start/rate_changes.h"
 #include "livens/multibody/body.h"
 #include "livens/multibody/joints.h"
@@ -317,29 +318,32 @@ void settle_rates(const Model& model, const std::vector<Led>& all, const std::ve
 
 }   // namespace
 
-MovedStart move_start(const Model& model, const std::vector<StartCoordinate>& wanted, StartPolicy policy,
-                      double t, const std::vector<StatedVelocity>& given)
+MovedStart dynamics_internal::move_start_with_laws(const Model& model,
+                                                   const std::vector<StartCoordinate>& wanted,
+                                                   StartPolicy policy, double t,
+                                                   const std::vector<StatedVelocity>& given, bool is_led)
 {
     if (model.has_drives() || !model.loads().empty() || !model.sensors().empty())
         throw std::logic_error("a start is moved before drives, loads and sensors are there");
     State stated = model.start();
     stated.t = t;
     const std::vector<Matrix34> V = std::exchange(stated.V, std::vector<Matrix34>(stated.X.size()));
-    const ConsistentStart closed = consistent_start(model, stated, policy);
+    State begin = stated;   // led bodies close below, where the wanted values hold
+    if (!is_led || policy == StartPolicy::check) begin = consistent_start(model, stated, policy).start;
     MovedStart moved{model, {}, 0, {}};
     std::vector<Led> all = all_coordinates(model, wanted);
 
     const auto is_wanted = [](const Led& led) { return led.has_value || led.has_rate; };
-    const Chosen chosen = choose(model, all, closed.start.X, 0, is_wanted);
+    const Chosen chosen = choose(model, all, begin.X, 0, is_wanted);
     for (const std::size_t i : chosen.kept) moved.kept.push_back(name_of(model, all[i]));
     moved.left_free = freedoms(model) - static_cast<int>(chosen.rows.size());
-    const Model led = led_model(model, all, closed.start.X, Law::go);
-    Way way = lead(led, all, model, chosen.rows, closed.start.X);
+    const Model led = led_model(model, all, begin.X, Law::go);
+    Way way = lead(led, all, model, chosen.rows, begin.X);
     if (!way.is_whole && !chosen.kept.empty()) {   // what was to be kept may stand in the way
         std::vector<int> fewer = chosen.rows;
         // Rows of kept coordinates stand last: without them the way is tried a second time.
         fewer.resize(fewer.size() - chosen.kept.size());
-        const Way other = lead(led, all, model, fewer, closed.start.X);
+        const Way other = lead(led, all, model, fewer, begin.X);
         if (other.is_whole) moved.kept.clear();
         if (other.done > way.done) way = other;
     }

@@ -33,7 +33,7 @@ inline constexpr LossKind limits_order{
 inline constexpr LossKind limits_at_start{"import-lost",
                                           "joint",
                                           "joints",
-                                          "limits are not kept at or beyond which a joint begins",
+                                          "limits are not kept beyond which a joint begins",
                                           "state by 'at' where the joint begins",
                                           true,
                                           true};
@@ -46,7 +46,14 @@ inline constexpr LossKind friction{"import-lost",
                                    "docs/howto/friction.md has it as an expression",
                                    true};
 inline constexpr LossKind damping{
-    "import-lost", "joint", "joints", "damping of planar joints is not kept", "", true};
+    "import-lost", "joint", "joints", "damping of planar and floating joints is not kept", "", true};
+inline constexpr LossKind limits_of_others{
+    "import-lost",
+    "joint",
+    "joints",
+    "limits are not kept of joints that are neither revolute nor prismatic",
+    "",
+    true};
 inline constexpr LossKind collision{
     "import-lost", "shape", "shapes", "collision geometry is not kept (bodies do not touch)", "", true};
 inline constexpr LossKind extension{"import-lost", "place", "places", "<@> is unknown and not kept", "",
@@ -68,24 +75,26 @@ inline constexpr LossKind mesh_package{"import-lost", "mesh", "meshes",
                                        "give the folder of package '@'"};
 inline constexpr LossKind mesh_format{"import-lost", "mesh", "meshes", "@ meshes are not drawn",
                                       "STL, OBJ, PLY, DAE and MSH are drawn: convert them"};
-inline constexpr LossKind mesh_outside{
-    "import-lost", "mesh", "meshes", "meshes outside the given folders are not drawn",
-    "give their folder as a package; a scenario file must lie in a folder above its meshes"};
+inline constexpr LossKind mesh_outside{"import-lost", "mesh", "meshes",
+                                       "meshes outside the given folders are not drawn",
+                                       "give their folder as a package"};
 inline constexpr LossKind mesh_unreadable{"import-lost", "mesh", "meshes", "not drawn: @"};
 inline constexpr LossKind mesh_scale{"import-lost", "mesh", "meshes",
                                      "meshes with an uneven or negative scale are not drawn"};
 
 // Kept as part of something else.
-inline constexpr LossKind merged{"import-merged", "link", "links",
-                                 "merged into the body of the parent link (fixed joints)"};
-inline constexpr LossKind grounded{"import-merged", "link", "links",
-                                   "fixed to the world (their mass does not matter)"};
+inline constexpr LossKind merged{
+    "import-merged", "link", "links",
+    "merged into the body of the parent link (fixed joints), and kept as points, without axes"};
+inline constexpr LossKind grounded{
+    "import-merged", "link", "links",
+    "fixed to the world (their mass does not matter), and kept as points, without axes"};
 inline constexpr LossKind held{"import-merged", "joint", "joints",
                                "fixed, because they mimic a joint that does not move"};
 inline constexpr LossKind free_joint{"import-merged", "joint", "joints",
                                      "floating joints are not needed (the body is free)"};
 inline constexpr LossKind renamed{
-    "import-merged", "joint", "joints", "renamed with ' joint', because a body has the same name", "",
+    "import-merged", "joint", "joints", "renamed with ' joint', because a link has the same name", "",
     false,           true};
 
 // Mended.
@@ -99,6 +108,9 @@ inline constexpr LossKind inertia{
     "inertias = strict makes this an error",
     true,
     true};
+inline constexpr LossKind products{
+    "import-mended",          "link", "links", "products of inertia that are not stated are taken as 0",
+    "state ixy, ixz and iyz", true};
 inline constexpr LossKind axis{"import-mended", "joint", "joints", "axis was normalised to length 1"};
 inline constexpr LossKind multiplier{
     "import-mended",

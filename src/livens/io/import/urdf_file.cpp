@@ -53,8 +53,18 @@ UrdfInertial UrdfReader::inertial(const XmlElement& e, const std::string& owner)
             {"ixx", "ixy", "ixz"}, {"ixy", "iyy", "iyz"}, {"ixz", "iyz", "izz"}};
         check(*inertia, {{"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}, {}}, owner);
         Matrix3 J{};
+        bool has_products = true;
         for (int i = 0; i < 3; ++i)
-            for (int j = i; j < 3; ++j) J(i, j) = J(j, i) = number(*inertia, names[i][j], 0);
+            for (int j = i; j < 3; ++j) {
+                J(i, j) = J(j, i) = number(*inertia, names[i][j], 0);
+                if (inertia->find(names[i][j]) != nullptr) continue;
+                if (i == j)   // 0 would be another body
+                    findings_.error(inertia->place, "urdf-tag",
+                                    "<inertia> of " + owner + " needs the attribute '" +
+                                        std::string(names[i][j]) + "'");
+                has_products = false;
+            }
+        if (!has_products) losses_.add(losses::products, inertia->place, owner);
         of.inertia = frame.axes * J * transpose(frame.axes);
         of.place = inertia->place;
     }

@@ -74,6 +74,13 @@ UrdfJoints::UrdfJoints(const UrdfFile& file, const UrdfTree& tree, const UrdfOpt
         body_names_.push_back(name == "world" ? "world link" : name);
         taken_.insert(body_names_.back());
     }
+    point_names_.resize(file.links.size());
+    for (std::size_t i = 0; i < file.links.size(); ++i) {
+        const int body = tree.links[i].body;
+        if (file.links[i].name == "world" || (body >= 0 && tree.frames[body] == static_cast<int>(i)))
+            continue;
+        point_names_[i] = unused(file.links[i].name);
+    }
 }
 
 /// Bodies, joints and loads are asked for by name, so that each has one of its own.
@@ -91,6 +98,19 @@ Pose UrdfJoints::in_body(const PlacedLink& link) const
     return {back * link.pose.axes, back * (link.pose.origin - frame.origin)};
 }
 
+std::vector<TableMaker> UrdfJoints::points() const
+{
+    std::vector<TableMaker> all;
+    for (std::size_t i = 0; i < point_names_.size(); ++i) {
+        if (point_names_[i].empty()) continue;
+        const PlacedLink& link = tree_.links[i];
+        TableMaker& point = all.emplace_back(file_.links[i].place);
+        point.text("name", point_names_[i]).text("body", body_name(link.body));
+        if (const Vector3 at = in_body(link).origin; !(at == Vector3{})) point.vector("position", at);
+    }
+    return all;
+}
+
 TableMaker UrdfJoints::joint(const PlacedJoint& placed)
 {
     const UrdfJoint& joint = file_.joints[placed.joint];
@@ -105,27 +125,41 @@ TableMaker UrdfJoints::joint(const PlacedJoint& placed)
     return table;
 }
 
-/// What the joint does along its coordinate. A start beyond a limit would be thrown back, and one at it would
-/// rest on a stiff spring, as knees do that are drawn straight: such an end is told instead.
-void UrdfJoints::add_loads(TableMaker& table, const PlacedJoint& placed)
+/// What no joint keeps, and what joints without a coordinate have no place for.
+void UrdfJoints::tell_lost(const UrdfJoint& joint)
 {
-    const UrdfJoint& joint = file_.joints[placed.joint];
+    using enum UrdfJoint::Type;
     const std::string name = "'" + joint.name + "'";
-    if (joint.damping > 0 && joint.type == UrdfJoint::Type::planar)
+    if (joint.damping > 0 && (joint.type == planar || joint.type == floating))
         losses_.add(losses::damping, joint.place, name);
-    else if (joint.damping > 0)
-        table.number("damping", joint.damping);
     if (!joint.limit) return;
     const UrdfLimit& limit = *joint.limit;
     if (limit.effort > 0 || limit.velocity > 0) losses_.add(losses::bounds, limit.place, name);
-    if (joint.type == UrdfJoint::Type::continuous || !joint.has_coordinate() || !limit.lower) return;
+    if (limit.lower && joint.type != revolute && joint.type != prismatic)
+        losses_.add(losses::limits_of_others, limit.place, name);
+}
+
+/// What the joint does along its coordinate.
+void UrdfJoints::add_loads(TableMaker& table, const PlacedJoint& placed)
+{
+    const UrdfJoint& joint = file_.joints[placed.joint];
+    tell_lost(joint);
+    if (joint.damping > 0 && joint.type != UrdfJoint::Type::planar) table.number("damping", joint.damping);
+    if (joint.limit && joint.limit->lower && joint.has_coordinate() &&
+        joint.type != UrdfJoint::Type::continuous)
+        add_limits(table, *joint.limit, "'" + joint.name + "'", placed.coordinate);
+}
+
+/// A start beyond a limit would be thrown back: such an end is told instead.
+void UrdfJoints::add_limits(TableMaker& table, const UrdfLimit& limit, const std::string& name,
+                            double coordinate)
+{
     if (options_.limits == UrdfOptions::Limits::ignore) return losses_.add(losses::limits, limit.place, name);
     if (!(*limit.lower < *limit.upper)) return losses_.add(losses::limits_order, limit.place, name);
-    constexpr double slack = 1e-6;   // rad or m, of a start at a limit that was computed
+    constexpr double slack = 1e-9;   // rad or m, as a scenario has it for a start at a limit
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    const double q = placed.coordinate;
-    const double low = q > *limit.lower + slack ? *limit.lower : -infinity;
-    const double high = q < *limit.upper - slack ? *limit.upper : infinity;
+    const double low = coordinate >= *limit.lower - slack ? *limit.lower : -infinity;
+    const double high = coordinate <= *limit.upper + slack ? *limit.upper : infinity;
     if (low == -infinity || high == infinity) losses_.add(losses::limits_at_start, limit.place, name);
     if (low > -infinity || high < infinity) table.numbers("limits", std::array{low, high});
 }
@@ -155,6 +189,8 @@ std::vector<TableMaker> UrdfJoints::joints()
 {
     std::vector<TableMaker> all;
     for (const PlacedJoint& placed : tree_.joints) all.push_back(joint(placed));
+    for (const UrdfJoint& free : file_.joints)
+        if (free.type == UrdfJoint::Type::floating) tell_lost(free);
     for (const PlacedJoint& placed : tree_.joints)
         if (file_.joints[placed.joint].mimic) all.push_back(coupling(file_.joints[placed.joint]));
     return all;

@@ -20,6 +20,8 @@ public:
     /// What a body is called; -1: the world.
     const std::string& body_name(int body) const { return body_names_[body + 1]; }
 
+    /// Links that are part of a body or of the world, by their names: places, for points have no axes.
+    std::vector<TableMaker> points() const;
     /// All joints, and couplings of those that follow others.
     std::vector<TableMaker> joints();
     void add_loops(std::vector<TableMaker>& joints, Findings& findings);
@@ -27,6 +29,8 @@ public:
 private:
     TableMaker joint(const PlacedJoint& placed);
     void add_loads(TableMaker& table, const PlacedJoint& placed);
+    void add_limits(TableMaker& table, const UrdfLimit& limit, const std::string& name, double coordinate);
+    void tell_lost(const UrdfJoint& joint);
     TableMaker coupling(const UrdfJoint& joint);
     std::string unused(std::string name);
     Pose in_body(const PlacedLink& link) const;
@@ -38,6 +42,7 @@ private:
     Losses& losses_;
     std::vector<std::string> body_names_;   ///< the world first
     std::set<std::string> taken_;
+    std::vector<std::string> point_names_;       ///< of links; empty where one is no point
     std::map<std::string, std::string> names_;   ///< of joints, by those in the file
 };
 

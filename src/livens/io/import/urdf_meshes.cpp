@@ -106,20 +106,20 @@ bool UrdfMeshes::locate(const UrdfVisual& visual, const std::string& link, fs::p
 
 void UrdfMeshes::find(const UrdfFile& file, Losses& losses)
 {
-    folder_ = options_.folder ? plain_path(*options_.folder) : plain_path(file_.parent_path());
+    folder_ = plain_path(file_.parent_path());
+    const fs::path wanted = options_.folder ? plain_path(*options_.folder) : folder_;
+    bool are_below = options_.folder.has_value();
     if (options_.meshes == UrdfOptions::Meshes::none) return;
     for (const UrdfLink& link : file.links)
         for (const UrdfVisual& visual : link.visuals) {
             fs::path found;
             const std::string name = "'" + link.name + "'";
             if (visual.shape != UrdfVisual::Shape::mesh || !locate(visual, name, found, losses)) continue;
-            if (options_.folder && !is_below(found, folder_)) {
-                losses.add(losses::mesh_outside, visual.place, name);
-                continue;
-            }
-            if (!options_.folder) folder_ = common(folder_, found);
+            are_below = are_below && is_below(found, wanted);
+            folder_ = common(folder_, found);
             meshes_[&visual] = found;
         }
+    if (are_below) folder_ = wanted;
 }
 
 void UrdfMeshes::draw(const UrdfLink& link, const Pose& pose, const std::set<int>& refused,

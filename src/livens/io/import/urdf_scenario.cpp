@@ -109,7 +109,7 @@ Node UrdfImport::root(const std::set<int>& refused)
     losses_ = losses_before_;
     UrdfJoints joints(file_, tree_, options_, losses_);
     std::vector<TableMaker> all_bodies = bodies(joints, refused);
-    std::vector<TableMaker> all_joints = joints.joints();
+    std::vector<TableMaker> all_points = joints.points(), all_joints = joints.joints();
     joints.add_loops(all_joints, findings_);
     TableMaker root(file_.place);
     root.whole("format", 1);
@@ -120,6 +120,7 @@ Node UrdfImport::root(const std::set<int>& refused)
         root.table("world", std::move(world.tables("visual", std::move(visuals))));
     }
     root.tables("body", std::move(all_bodies));
+    root.tables("point", std::move(all_points));
     root.tables("joint", std::move(all_joints));
     if (!options_.loops.empty()) {   // the file's pose need not close them
         TableMaker start({});

@@ -21,6 +21,7 @@ namespace {
 constexpr double bytes_of_number = 8;   // of what poses may take: a series takes half as much as they do
 constexpr double fewest_instants = 120;
 constexpr double no_signal = 1e-12;   // of the largest number of all: rounding
+constexpr double no_force = 1e-8;     // of what moves the whole model: what is left of forces that cancel
 constexpr double flat = 2e-6;         // of itself: what plots show at the least
 constexpr int n_places = 400;         // at what series lose between their instants
 
@@ -114,6 +115,7 @@ public:
     }
 
     const std::vector<Channel>& channels() const { return channels_; }
+    const Model& model() const { return model_; }
 
     /// The values of all channels. `is_before`: from the left, where they jump.
     std::vector<double> at(double t, bool is_before) const
@@ -184,6 +186,21 @@ private:
 
 using Columns = std::vector<std::vector<double>>;   // of channels, node after node
 
+/// By unit, what a series of it has at the least that is no rounding. In a free fall, say, joints bear
+/// differences of weights and accelerations: nothing, but for their last digits.
+std::map<std::string, double> rounding_of_units(const Model& model, double acceleration)
+{
+    double mass = 0;
+    for (const Body& body : model.bodies()) mass += body.mass(0, 0);
+    const double a = std::max(acceleration, norm(model.gravity())), length = model.length();
+    const double rate = std::sqrt(a / length), force = mass * a;
+    std::map<std::string, double> all{
+        {"rad/s", rate}, {"m/s", rate * length},  {"rad/s^2", a / length}, {"m/s^2", a},
+        {"N", force},    {"N m", force * length}, {"J", force * length},   {"W", force * rate * length}};
+    for (auto& [unit, least] : all) least *= no_force;
+    return all;
+}
+
 /// What the page shows between instants, and how far it is off.
 class Between {
 public:
@@ -200,9 +217,12 @@ public:
             }
             // What is constant but for rounding is shown as a line.
             const double shown = std::max(high - low, flat * std::max(std::abs(high), std::abs(low)));
-            double& range = ranges_[curves.channels()[c].unit];
+            const std::string& unit = curves.channels()[c].unit;
+            double& range = ranges_[unit];
             if (shown > range) range = shown;
+            if (unit == "m/s^2") fastest_ = std::max({fastest_, std::abs(low), std::abs(high)});
         }
+        rounding_ = rounding_of_units(curves.model(), fastest_);
     }
 
     /// At a place of an element, as a part of the largest range that a series of the same unit has.
@@ -217,7 +237,10 @@ public:
             double shown = 0;
             for (std::size_t a = 0; a < n_nodes; ++a) shown += weights_[a] * columns_[c][e * n_nodes + a];
             const double range = ranges_[curves_.channels()[c].unit], off = std::abs(shown - truth[c]);
-            if (range > no_signal * largest_ && off / range > loss) loss = off / range;
+            const auto rounding = rounding_.find(curves_.channels()[c].unit);
+            const double least =
+                std::max(no_signal * largest_, rounding == rounding_.end() ? 0.0 : rounding->second);
+            if (range > least && off / range > loss) loss = off / range;
         }
         return loss;
     }
@@ -240,8 +263,8 @@ private:
     const Columns& columns_;
     LagrangeBasis basis_;
     std::vector<double> weights_;
-    std::map<std::string, double> ranges_;   // of units
-    double largest_ = 0;
+    std::map<std::string, double> ranges_, rounding_;   // of units
+    double largest_ = 0, fastest_ = 0;
 };
 
 /// All channels at the nodes of an element.

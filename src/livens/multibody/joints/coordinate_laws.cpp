@@ -24,6 +24,32 @@ constexpr double same = 1e-12;    // of the largest value: the same but for roun
     throw InputError({"coupling-law", "joint.law", message, value, "", "", help});
 }
 
+/// As tables of time are checked, but of coordinates.
+void check_rows(const std::vector<double>& coordinates, const std::vector<double>& values)
+{
+    const auto refuse = [](const char* code, const std::string& message, double value, const char* bound) {
+        throw InputError({code, "joint.law", message, to_text(value), bound, "", ""});
+    };
+    if (coordinates.size() != values.size())
+        throw InputError({"table-size", "joint.law",
+                          "the table of a law needs one value for every coordinate",
+                          std::to_string(values.size()) + " values",
+                          std::to_string(coordinates.size()) + " coordinates", "", ""});
+    if (coordinates.size() < 2)
+        refuse("table-size", "the table of a law needs at least two rows",
+               static_cast<double>(coordinates.size()), ">= 2");
+    for (std::size_t i = 0; i < coordinates.size(); ++i) {
+        const std::string row = "row " + std::to_string(i + 1) + " of the table of a law";
+        if (!std::isfinite(coordinates[i]))
+            refuse("not-finite", row + " has no finite coordinate", coordinates[i], "finite");
+        if (!std::isfinite(values[i]))
+            refuse("not-finite", row + " has no finite value", values[i], "finite");
+        if (i > 0 && !(coordinates[i] > coordinates[i - 1]))
+            refuse("table-order", row + " has no larger coordinate than the row before it", coordinates[i],
+                   "coordinates ascend");
+    }
+}
+
 /// One round with as many rows before and behind as it takes to forget the ends.
 TimeFunction periodic_spline(const std::vector<double>& at, const std::vector<double>& values, double period,
                              double rise)
@@ -53,6 +79,7 @@ bool repeats(const TimeFunction& f, double turn, double& rise)
         apart = std::max(apart, std::abs(there.value - here.value - rise));
         steps_apart = std::max(steps_apart, std::abs(there.first - here.first));
     }
+    if (!std::isfinite(rise + size)) return false;   // as a logarithm at 0
     if (std::abs(rise) <= same * size) rise = 0;
     return apart <= same * size && steps_apart <= same * std::max(steepest, size);
 }
@@ -63,7 +90,8 @@ CoordinateLaw tabulated_law(const std::vector<double>& coordinates, const std::v
                             bool is_periodic)
 {
     CoordinateLaw law;
-    law.at = spline_table(coordinates, values);   // throws
+    check_rows(coordinates, values);
+    law.at = spline_table(coordinates, values);   // throws for slopes beyond numbers
     law.low = coordinates.front();
     law.high = coordinates.back();
     if (!is_periodic) {

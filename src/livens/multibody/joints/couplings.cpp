@@ -238,14 +238,6 @@ Joint coupling(const std::string& name, const std::vector<CoupledJoint>& terms, 
     const std::string unit = is_angle ? " rad" : " m";
     law.what = spoken(of) + " leaves the law of '" + name + "', which is known from " +
                to_text(law.law.low, 6) + " to " + to_text(law.law.high, 6) + unit;
-    const double now = leader.at_stated, slack = 1e-9 * (law.law.high - law.law.low);
-    if (!(law.law.period > 0) && !(now >= law.law.low - slack && now <= law.law.high + slack))
-        refuse_terms("coupling-range", at_law, spoken(of) + " begins outside of the law", to_text(now) + unit,
-                     "it is known from " + to_text(law.law.low, 6) + " to " + to_text(law.law.high, 6) + unit,
-                     "continue the table to there; nothing is extrapolated");
-    if (!std::isfinite(law.law.at({now}).value))
-        refuse_terms("coupling-law", at_law, "the law has no value where " + spoken(of) + " begins",
-                     to_text(now) + unit, "", "");
     joint.rows.push_back(coupling_row(coordinates, -shift, scale, "coupling", &law));
     return joint;
 }

@@ -153,7 +153,24 @@ struct BushingLaw {
     }
 
     static std::array<double, 6> u(const LawArguments& at) { return motion(at).u; }
-    double force(const LawArguments& at, int k) const { return force(motion(at), k); }
+    /// What acts on the second body along the first frame's axes, at the second frame's origin: forces, and
+    /// the couple whose power is that of f along r'.
+    std::array<double, 6> acting(const LawArguments& at) const
+    {
+        const Motion m = motion(at);
+        std::array<double, 6> f;
+        for (int k = 0; k < 6; ++k) f[k] = force(m, k);
+        const Vector3 couple = couple_of({f[3], f[4], f[5]}, {m.u[3], m.u[4], m.u[5]});
+        return {f[0], f[1], f[2], couple[0], couple[1], couple[2]};
+    }
+    /// Whether anything acts along the rotation vector, which ends at half a turn.
+    bool acts_on_rotation() const
+    {
+        for (int k = 3; k < 6; ++k)
+            for (int l = 0; l < 6; ++l)
+                if (of.stiffness(k, l) != 0 || of.damping(k, l) != 0 || of.preload[k] != 0) return true;
+        return false;
+    }
 
     double potential(const LawArguments& at) const
     {
@@ -259,11 +276,14 @@ struct SpinningBushing {
     {
         return springs_see(at, [&](const LawArguments& q) { return springs.u(q); });
     }
-    double force(const LawArguments& at, int k) const
+    std::array<double, 6> acting(const LawArguments& at) const
     {
-        return springs_see(at, [&](const LawArguments& q) { return springs.force(q, k); }) +
-               dampers.force(at)[k];
+        std::array<double, 6> f = springs_see(at, [&](const LawArguments& q) { return springs.acting(q); });
+        const Matrix<6, 1> damped = dampers.force(at);
+        for (int k = 0; k < 6; ++k) f[k] += damped[k];
+        return f;
     }
+    bool acts_on_rotation() const { return springs.acts_on_rotation(); }
     double potential(const LawArguments& at) const
     {
         return springs_see(at, [&](const LawArguments& q) { return springs.potential(q); });
@@ -283,11 +303,12 @@ void add_law(LoadParts& parts, const Law& law)
     parts.potential = [law](const LawArguments& q) { return law.potential(q); };
     parts.power = [law](const LawArguments& q) { return law.power(q); };
     parts.recorded_power = [law](const LawOnTape& on) { return law.recorded_power(on); };
-    // What acts on u, as the law has it, and u.
+    if (law.acts_on_rotation()) parts.domain = "its rotation vector changes its sign at half a turn";
+    // What acts on the second body, and u.
     for (int k = 0; k < 6; ++k) {
         const std::string letter(1, "xyz"[k % 3]);
         parts.readings.push_back({(k < 3 ? "force_" : "torque_") + letter, k < 3 ? "N" : "N m",
-                                  [law, k](const LawArguments& q) { return law.force(q, k); }});
+                                  [law, k](const LawArguments& q) { return law.acting(q)[k]; }});
         parts.readings.push_back({(k < 3 ? "displacement_" : "rotation_") + letter, k < 3 ? "m" : "rad",
                                   [law, k](const LawArguments& q) { return law.u(q)[k]; }});
     }

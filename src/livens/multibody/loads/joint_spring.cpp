@@ -252,6 +252,8 @@ Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, co
                              }});
     load.readings.push_back({"limit_stiffness", is_angle ? "N m/rad" : "N/m",
                              [stiffness = limits.stiffness](const LoadArguments&) { return stiffness; }});
+    load.readings.push_back({"limit_damping", is_angle ? "s/rad" : "s/m",
+                             [damping = limits.damping](const LoadArguments&) { return damping; }});
     return load;
 }
 

@@ -91,6 +91,16 @@ Turn turn_of(const double* q)
     return turn;
 }
 
+Vector3 couple_of(const Vector3& f, const Vector3& r)
+{
+    const double x2 = 0.25 * dot(r, r), x = std::sqrt(x2);
+    const auto [sine, cosine] = sine_cosine(x);
+    // Its series where the difference cancels.
+    const double k = x2 > 0.01 ? (1 - x * cosine / sine) / (4 * x2)
+                               : 1. / 12 + x2 * (1. / 180 + x2 * (1. / 1890 + x2 / 18900));
+    return f + 0.5 * cross(r, f) + k * cross(r, cross(r, f));
+}
+
 }   // namespace multibody_internal
 
 }   // namespace livens

@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include "livens/base/linear.h"
+
 namespace livens::inline multibody_internal {
 
 /// A number and its derivatives by s1, s2, s3 and c.
@@ -33,5 +35,9 @@ struct Turn {
 };
 /// Of s1, s2, s3 and c.
 Turn turn_of(const double* q);
+
+/// The couple with the power f . r' for whatever angular velocity w turns r: r' = (I - r^/2 + k r^ r^) w
+/// along the axes of the first triad, with k = (1 - x cot x) / (4 x^2), x = |r|/2.
+Vector3 couple_of(const Vector3& f, const Vector3& r);
 
 }   // namespace livens::inline multibody_internal

@@ -16,10 +16,11 @@ namespace {
 
 constexpr int looks_an_element = 16;
 
-/// The readings of a load that are a rotation vector; empty: it has none.
+/// The readings of a load that are a rotation vector by which its force ends; empty: it has none.
 std::optional<std::array<const LoadReading*, 3>> rotation_of(const Load& load)
 {
     std::array<const LoadReading*, 3> found{};
+    if (load.domain.empty()) return {};   // its force is a number however far it turns
     for (const LoadReading& reading : load.readings)
         for (std::size_t k = 0; k < 3; ++k)
             if (reading.name == std::string("rotation_") + "xyz"[k]) found[k] = &reading;

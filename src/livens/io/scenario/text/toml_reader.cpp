@@ -135,6 +135,19 @@ std::string_view quoted(std::string_view description)
                                            : description.substr(begin + 1, end - begin - 1);
 }
 
+bool is_quote(char c) { return c == '"' || c == '\''; }
+
+/// The key that stands at a place of a line. Of one in quotes the parser's own words have letters twice.
+std::string redefined(std::string_view word, std::string_view line, const SourceLocation& place)
+{
+    const auto column = static_cast<std::size_t>(std::max(1, place.column)) - 1;
+    std::string_view written = line.substr(std::min(column, line.size()));
+    written = written.substr(0, static_cast<std::size_t>(std::max(0, place.length)));
+    if (written.size() > 2 && is_quote(written.front()) && written.back() == written.front())
+        return "'" + std::string(written.substr(1, written.size() - 2)) + "'";
+    return word.find('"') == std::string_view::npos ? "'" + std::string(word) + "'" : "a key";
+}
+
 /// toml++ points behind `key =`; the key itself is wanted.
 SourceLocation place_of_key_before(const SourceLocation& place, std::string_view line)
 {
@@ -149,6 +162,10 @@ SourceLocation place_of_key_before(const SourceLocation& place, std::string_view
     if (end == 0 || before(end) != '=') return place;
     for (--end; end > 0 && (before(end) == ' ' || before(end) == '\t');) --end;
     int begin = end;
+    if (is_quote(before(end))) {
+        for (--begin; begin > 0 && before(begin) != before(end);) --begin;
+        return begin > 0 ? SourceLocation{place.line, begin, end - begin + 1} : place;
+    }
     while (begin > 0 && is_in_key(static_cast<unsigned char>(before(begin)))) --begin;
     return begin < end ? SourceLocation{place.line, begin + 1, end - begin} : place;
 }
@@ -186,7 +203,7 @@ void report(const toml::parse_error& error, std::string_view text, Findings& fin
     const std::string_view line = line_of(text, place.line);
     if (says("cannot redefine")) {
         if (!says("table header")) place = place_of_key_before(place, line);
-        findings.error(place, "duplicate-key", "'" + std::string(word) + "' is given a second time",
+        findings.error(place, "duplicate-key", redefined(word, line, place) + " is given a second time",
                        {"a key may be given once in its table",
                         says("array-of-tables")
                             ? "write [[" + std::string(word) + "]] with two brackets everywhere"
