@@ -168,6 +168,12 @@ Failure failure_of(ScenarioResult&& result)
     return {code, status_of(code), std::move(result.diagnostics), std::move(result.text)};
 }
 
+Failure failure_in(const Scenario& scenario, const InputError& error)
+{
+    return {
+        exit_scenario, status_of(exit_scenario), {diagnostic_of(scenario, error.complaint())}, scenario.text};
+}
+
 void show(const Failure& f, const Common& common)
 {
     if (concerns_file(f) || common.diagnostics != DiagnosticFormat::human)

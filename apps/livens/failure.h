@@ -27,6 +27,17 @@ Failure failure(int exit_code, const std::string& message);
 
 /// Of a scenario that cannot be read.
 Failure failure_of(ScenarioResult&& result);
+Failure failure_in(const Scenario& scenario, const InputError& error);
+/// Of what is complained of while a scenario is solved: at its place in the file.
+template <class Solve>
+auto in_file_of(const Scenario& scenario, Solve solve)
+{
+    try {
+        return solve();
+    } catch (const InputError& error) {
+        throw failure_in(scenario, error);
+    }
+}
 /// Of what is being handled.
 Failure current_failure();
 

@@ -110,7 +110,8 @@ LiveScenario::Outcome LiveScenario::solved() const
         SolveOptions options = scenario.options;
         options.most_bytes = std::min(options.most_bytes, 0.5 * memory_left());
         options.progress = [&](const Progress&) { return goes_on(); };
-        SolvedScenario motion = solve_scenario(scenario, options, scenario.prepared);
+        SolvedScenario motion =
+            in_file_of(scenario, [&] { return solve_scenario(scenario, options, scenario.prepared); });
         if (motion.solution.motion.mesh.ends.empty())
             throw failure(exit_not_converged, motion.solution.report.message);
         if (motion.found != nullptr) read.scenario = *motion.found;

@@ -125,9 +125,10 @@ Solved solve_job(Job& job, double share, ProgressLine& line)
         line.show(progress);
         return InterruptWatch::signal() == 0;
     };
-    SolvedScenario motion =
-        solve_scenario(scenario, options, scenario.prepared,
-                       job.guess ? guess_of(scenario, *job.guess) : std::function<State(double)>{});
+    std::function<State(double)> guess;
+    if (job.guess) guess = guess_of(scenario, *job.guess);
+    SolvedScenario motion = in_file_of(
+        scenario, [&] { return solve_scenario(scenario, options, scenario.prepared, std::move(guess)); });
     if (motion.solution.motion.mesh.ends.empty())   // nothing may replace an older result
         throw failure(exit_signal + InterruptWatch::signal(), motion.solution.report.message);
     Solved solved;

@@ -22,14 +22,23 @@ def text_of(value: Any, path: str) -> str:
     return value if isinstance(value, str) else repr(float(value))
 
 
-def _number_or_text(value: Any, path: str) -> Any:
+def _stated(value: Any, path: str) -> Any:
+    """A number or a string, or what :func:`unknown` makes of one."""
+    if isinstance(value, Mapping) and "unknown" in value:
+        return plain(value, None, path)
     return value if isinstance(value, str) else float(text_of(value, path))
 
 
-class Parameters(MutableMapping[str, float]):
-    """Parameters of a model: ``m.parameters["L"]`` is a number in SI units, whatever it was computed from.
+def _guess(value: Any) -> Any:
+    """What a parameter is computed as: an unknown one is what it is guessed to be."""
+    return value["unknown"] if isinstance(value, Mapping) and "unknown" in value else value
 
-    Assigning takes a number, a string with a unit or an expression of others. A plain number keeps the unit that
+
+class Parameters(MutableMapping[str, float]):
+    """Parameters of a model: ``m.parameters["L"]`` is a number in SI units, whatever it was computed from; of an
+    unknown one its guess.
+
+    Assigning takes a number, a string with a unit, an expression of others, or :func:`unknown`. A plain number keeps the unit that
     the parameter has. Numbers of the model may then be computed: ``position=("L/2", 0, 0)``.
 
     Raises:
@@ -67,9 +76,9 @@ class Parameters(MutableMapping[str, float]):
     def __setitem__(self, name: str, value: Any) -> None:
         path = f"parameters.{name}"
         table = self._table().copy()
-        if isinstance(table.get(name), str) and not isinstance(value, str):
+        if isinstance(_guess(table.get(name)), str) and not isinstance(value, (str, Mapping)):
             value = self._in_its_unit(name, text_of(value, path))
-        self._keep(table, {name: _number_or_text(value, path)})
+        self._keep(table, {name: _stated(value, path)})
 
     def __delitem__(self, name: str) -> None:
         self[name]
@@ -96,7 +105,7 @@ class Parameters(MutableMapping[str, float]):
             raise fault("wrong-type", f"parameters are a dict, not {type(values).__name__}", "parameters",
                         'm.parameters = {"L": 0.4}')
         self._keep(Table(place=user_place()),
-                   {name: _number_or_text(value, f"parameters.{name}") for name, value in values.items()})
+                   {name: _stated(value, f"parameters.{name}") for name, value in values.items()})
 
     def _keep(self, table: Table, values: Mapping[str, Any]) -> None:
         here = user_place()
@@ -115,4 +124,4 @@ class Parameters(MutableMapping[str, float]):
         if found:
             raise raised([diagnostic_of(d, {"parameters": self._table()}) for d in found])
         parsed, _ = _core.parse(made.encode())
-        return tables(parsed[0], parsed[1], "", Place())["parameters"][name]
+        return _guess(tables(parsed[0], parsed[1], "", Place())["parameters"][name])

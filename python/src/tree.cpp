@@ -14,6 +14,7 @@
 #include "livens/io/scenario/schema/section.h"
 #include "livens/io/scenario/text/parameters.h"
 #include "livens/io/scenario/text/units.h"
+#include "livens/io/scenario/text/unknown_nodes.h"
 
 namespace livens::python {
 
@@ -144,14 +145,21 @@ nb::list schema()
     return all;
 }
 
+/// With unknown numbers as they are guessed.
+Node guessed(Node root, std::span<const Override> overrides, Findings& findings)
+{
+    std::optional<NumberedTree> numbered = with_guesses(root, overrides, findings);
+    return numbered ? std::move(numbered->root) : std::move(root);
+}
+
 /// Those of a model, from its table.
 struct ModelParameters {
     explicit ModelParameters(const nb::dict& table)
     {
         nb::dict root;
         root["parameters"] = table;
-        tree = reader.read(root);
-        parameters = Parameters(tree.find("parameters"), {}, findings);
+        tree = guessed(reader.read(root), {}, findings);
+        if (findings.n_errors() == 0) parameters = Parameters(tree.find("parameters"), {}, findings);
     }
 
     TreeReader reader{};
@@ -180,7 +188,8 @@ nb::tuple with_parameters(const std::string& text,
     if (root) {
         std::vector<Override> overrides;
         for (const auto& [name, value] : values) overrides.push_back({.name = name, .text = value});
-        const Parameters parameters(root->find("parameters"), overrides, findings);
+        const Node tree = guessed(std::move(*root), overrides, findings);
+        const Parameters parameters(tree.find("parameters"), overrides, findings);
         set = with_set_values(text, parameters);
     }
     return nb::make_tuple(set, python::to_python(findings.take(""), nullptr));
@@ -226,7 +235,8 @@ nb::tuple parse(nb::bytes text)
         root = parse_toml(view, findings);
     if (root && root->find("repeat") != nullptr) {
         Findings told_later;   // of parameters, by whatever builds the model
-        const Parameters parameters(root->find("parameters"), {}, told_later);
+        const Node tree = guessed(std::move(*parse_toml(view, told_later)), {}, told_later);
+        const Parameters parameters(tree.find("parameters"), {}, told_later);
         root = without_repeats(*root, parameters, findings);
     }
     nb::object tables = root ? nb::object(tables_of(*root)) : nb::none();
@@ -423,8 +433,8 @@ nb::list to_python(const std::vector<Diagnostic>& diagnostics, const std::vector
         item["help"] = d.help;
         item["file"] = d.file;
         item["source_line"] = d.source_line;
-        const bool is_known =
-            locations != nullptr && d.file.empty() && d.line > 0 && static_cast<std::size_t>(d.line) < locations->size();
+        const bool is_known = locations != nullptr && d.file.empty() && d.line > 0 &&
+                              static_cast<std::size_t>(d.line) < locations->size();
         const Location at = is_known ? (*locations)[static_cast<std::size_t>(d.line)] : Location{};
         nb::list inner;
         for (const std::string& step : at.inner) inner.append(nb::str(step.c_str(), step.size()));

@@ -69,3 +69,36 @@ def test_the_error_is_told_where_the_duration_is_found(degree: int) -> None:
     true = abs(fine["bob"].position[-1] - sol["bob"].position[-1]).max()
     assert true > 1e-9
     assert true / 10 < sol.error < 100 * true
+
+
+def test_parameters_may_be_unknown() -> None:
+    m = lv.Model(gravity=(0, 0, -G))
+    m.parameters = {"L": lv.unknown("80 cm", low="50 cm", high="2 m"), "half": "L/2"}
+    assert m.parameters["L"] == 0.8 and m.parameters["half"] == 0.4
+    m.add_body("arm", lv.box("L", 0.05, 0.05, mass=2), position=("half", 0, 0))
+    assert m["arm"].position[0] == 0.4
+    m.add_revolute("pivot", "world", "arm", at=(0, 0, 0), axis=(0, 1, 0))
+    sol = lv.solve(m, 0.5, elements=10, method=lv.Lobatto(6), start={"pivot.angle": 0, "pivot.angle_rate": 0},
+                   end={"pivot.angle": 1.5})
+    length = sol.unknowns["L"]
+    m.parameters["L"] = 0.7
+    assert m.parameters.given["L"] == "0.7 m", "a plain number keeps the unit"
+    m.parameters["L"] = length
+    march = lv.solve(m, 0.5, elements=20, method=lv.Lobatto(8))
+    assert march["pivot"].angle[-1] == pytest.approx(1.5, abs=1e-8)
+
+
+@pytest.mark.parametrize(("value", "code"), [
+    ({"guess": 3}, "wrong-type"),
+    ({"unknown": 3, "lwo": 2}, "unknown-key"),
+    ({"unknown": 3, "low": "3 kg"}, "unit"),
+    ({"unknown": [3]}, "wrong-type"),
+    ({"unknown": "3 kgx"}, "unit"),
+])
+def test_wrong_unknown_parameters_are_refused_once(value: Any, code: str) -> None:
+    m = lv.Model()
+    m.parameters = {"L": "1 m"}
+    with pytest.raises(lv.InputError) as told:
+        m.parameters["L"] = value
+    assert [d.code for d in told.value.diagnostics] == [code]
+    assert m.parameters["L"] == 1

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "livens/base/error.h"
 #include "livens/io/diagnostic.h"
 #include "livens/multibody/model.h"
 #include "livens/spacetime/options.h"
@@ -126,6 +127,9 @@ ScenarioResult parse_scenario(std::string text, const std::string& file_name, co
 /// The scenario whose unknown numbers are guessed with these values; it reads nothing but what it has read.
 /// Null: it cannot be read, which is a fault of the reader.
 std::shared_ptr<const Scenario> with_guesses(const Scenario& scenario, std::span<const double> values);
+
+/// What solving a scenario complains of, at its place in the file.
+Diagnostic diagnostic_of(const Scenario& scenario, const Complaint& complaint);
 
 /// Its unknown numbers, if it has some, as "found": of a scenario with what was found.
 void write_found(JsonWriter& json, const Scenario& scenario);

@@ -10,6 +10,7 @@
 
 #include "livens/io/scenario.h"
 #include "livens/io/scenario/text/tree.h"
+#include "livens/io/solve_scenario.h"
 #include "livens/spacetime/solve.h"
 #include "unit/io/scenario_text.h"
 
@@ -161,6 +162,18 @@ TEST(Examples, TwoPointArrivesWhenItIsThrown)
     const Matrix34 arrived = forward.motion.at_end(10).X[0];
     EXPECT_LT(norm(thrown.V[0].column(0) - Vector3{3, 0, 4.905}), 1e-12);
     EXPECT_LT(norm(arrived - s.conditions.end.X[0]), 1e-10);
+}
+
+/// The drag by shooting over a march of tight tolerance, which knows nothing of columns by a number.
+TEST(Examples, DamperToFindIsTheKnownOneAndBringsItThere)
+{
+    const Scenario s = example("damper_to_find");
+    const SolvedScenario found = solve_scenario(s, s.options, s.prepared);
+    ASSERT_TRUE(found.solution.report.converged()) << found.solution.report.message;
+    EXPECT_NEAR(found.solution.numbers.values.at(0), 0.763693631412843, 1e-12);
+    const Solution march =
+        solve(found.found->model, {{found.solution.motion.at_end(0)}}, make_time_mesh(0, 2, 40), Lobatto{8});
+    EXPECT_NEAR(march.motion.at_end(40).X[0](0, 0), 0.5, 1e-9);
 }
 
 TEST(Examples, TheFourBarIsRedundantAndHasOneFreedom)

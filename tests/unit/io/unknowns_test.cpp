@@ -232,8 +232,34 @@ TEST(UnknownsOfFiles, ThatAreWrongAreRefusedWhereTheyStand)
         ASSERT_NE(told, nullptr) << wrong.to << '\n' << shown(result);
         EXPECT_GT(told->line, 0) << wrong.to;
     }
+    const std::string parameter = replaced(pendulum, "L = \"100 cm\"", "L = { unknown = \"100 cx\" }");
+    const ScenarioResult computed = read(parameter);
+    ASSERT_EQ(computed.diagnostics.size(), 1u) << shown(computed);
+    EXPECT_EQ(computed.diagnostics[0].line, 5) << shown(computed);
     const ScenarioResult march = read(pendulum.substr(0, pendulum.find("[start.known]")));
     ASSERT_NE(find(march, "unknown-march"), nullptr) << shown(march);
+}
+
+/// Without friction no pendulum depends on its mass, which only solving can tell.
+TEST(UnknownsOfFiles, ThatNothingShowsAreToldWhereTheyStand)
+{
+    std::string text = replaced(pendulum, "mass = 1", "mass = { unknown = 1, low = 0.1 }");
+    text = replaced(text, "damping = { unknown = 0.3, low = 0 }", "damping = 0");
+    text = replaced(text, "inertia = [0.1, 0.1, 0.1]", "inertia = [1e-14, 1e-14, 1e-14]");
+    const ScenarioResult result = read(text);
+    ASSERT_TRUE(result.scenario) << shown(result);
+    try {
+        solved(*result.scenario);
+        FAIL() << "solved";
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.complaint().code, "unknown-unseen");
+        const Diagnostic told = diagnostic_of(*result.scenario, error.complaint());
+        EXPECT_EQ(told.severity, Severity::error);
+        EXPECT_EQ(told.code, "unknown-unseen");
+        EXPECT_EQ(told.file, "test.toml");
+        EXPECT_EQ(told.line, 17);
+        EXPECT_EQ(told.column, 8);
+    }
 }
 
 }   // namespace

@@ -147,6 +147,11 @@ UnknownNumbers unknown_numbers(NumberedTree tree, const MeshSource& files,
     return unknowns;
 }
 
+void remember_unknowns(const NumberedTree& tree, Builder& builder)
+{
+    for (const StatedUnknown& one : tree.unknowns) builder.remember("unknown[" + one.name + "]", one.place);
+}
+
 /// Everything behind the parser. The scenario counts if there is no error.
 void build(const Node& stated, TreePart part, const MeshSource& files, const ParameterValues& values,
            Scenario& scenario, Findings& findings)
@@ -181,8 +186,7 @@ void build(const Node& stated, TreePart part, const MeshSource& files, const Par
     scenario.conditions.start.t = start_of(scenario.time);
     scenario.conditions.end.t = end_of(scenario.time);
     if (numbered) {
-        for (const StatedUnknown& one : numbered->unknowns)
-            builder.remember("unknown[" + one.name + "]", one.place);
+        remember_unknowns(*numbered, builder);
         NumberedTree own{with_numbers(*numbered, {}), numbered->unknowns};   // this one is still in use
         scenario.unknowns = unknown_numbers(std::move(own), files, overrides_of(values));
     }
@@ -260,6 +264,25 @@ std::shared_ptr<const Scenario> with_guesses(const Scenario& scenario, std::span
     ScenarioResult read =
         parse_scenario(with_found_guesses(scenario.text, names, values), scenario.file, kept);
     return read.scenario ? std::make_shared<const Scenario>(std::move(*read.scenario)) : nullptr;
+}
+
+Diagnostic diagnostic_of(const Scenario& scenario, const Complaint& complaint)
+{
+    Findings findings;
+    MeshSource kept;
+    kept.kept = scenario.meshes;
+    AssemblySources sources(kept, findings);
+    const Node stated = parse_toml(scenario.text, findings).value();
+    const std::optional<NumberedTree> numbered = with_guesses(stated, {}, findings);
+    Assembly assembly(numbered ? numbered->root : stated, "", {}, sources);
+    assembly.read_model();
+    assembly.remember_places();
+    Scenario run;
+    read_run(assembly.builder(), run);
+    if (numbered) remember_unknowns(*numbered, assembly.builder());
+    assembly.builder().guard("", [&] { throw InputError(complaint); });
+    const std::vector<Diagnostic> found = findings.take(scenario.file);   // warnings were told before
+    return *std::ranges::find(found, Severity::error, &Diagnostic::severity);
 }
 
 ScenarioResult read_scenario(const std::filesystem::path& file, const ParameterValues& values)

@@ -184,6 +184,10 @@ std::optional<NumberedTree> with_guesses(const Node& root, std::span<const Overr
         }
     Findings told_later;
     const Parameters parameters(tree.root.find("parameters"), overrides, told_later);
+    if (told_later.n_errors() > 0) {   // guesses would be made of them
+        Parameters(tree.root.find("parameters"), overrides, findings);
+        return {};
+    }
     Node original = copied(root);
     for (StatedUnknown& one : tree.unknowns)
         if (!evaluate(at(original, one.path), parameters, one, findings)) return {};
