@@ -59,7 +59,7 @@ def from_urdf(file: str | os.PathLike[str], *, at: Mapping[str, float | str] | N
         >>> n = file.write_text(robot)
         >>> m = lv.from_urdf(file, at={"hinge": "30 deg"})
         >>> m
-        <livens.Model 'arm': 1 body, 1 joint>
+        <livens.Model 'arm': 1 body, 1 point, 1 joint>
         >>> [d.code for d in m.imported]
         ['import-merged', 'import-lost']
         >>> lv.solve(m, 1).success
