@@ -176,12 +176,6 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
     if (given.turn && !(norm(given.turn->axis) > 0))
         throw InputError(
             {"axis-zero", "time.periodic", "the axis of the turn must not be zero", "0, 0, 0", "", "", ""});
-    if (given.is_periodic && model.has_events())
-        throw InputError({"conditions-method", "time.periodic",
-                          "a mechanism whose joints or drives act for a part of the time is not solved for a "
-                          "periodic motion",
-                          "", "", "what acts at its end need not be what acts at its start",
-                          "give the conditions at both ends by component"});
     for (const Condition& one : given.components)
         if (!std::isfinite(one.value))
             throw InputError({"not-finite", "start.known[" + one.quantity.name + "]",
