@@ -290,7 +290,7 @@ TEST(FreePeriodic, WhatDoesNotDetermineThemIsRefused)
                                         "[start.known]\n\"bob.z\" = 0\n\"bob.vz\" = 0\n", "");
     EXPECT_EQ(code_of(braked), "conditions-too-few");
     EXPECT_EQ(code_of(replaced(in_plane, "type = \"rod\"\n", "type = \"rod\"\nuntil = 1\n")),
-              "conditions-method");
+              "joint-time-method");
     const auto turned = [&](const std::string& how) {
         return code_of(replaced(in_space, "{ turn = { unknown = 3.3 } }", how));
     };
