@@ -1629,7 +1629,7 @@ livens_mutant(NAME one_period_is_enough
 
 # Whatever moves is taken for driven.
 livens_mutant(NAME all_is_driven
-              FILE spacetime/march/components.cpp
+              FILE spacetime/march/conserved.cpp
               OLD [[if (F != first) return true;]]
               NEW [[return true;]]
               TESTS_OF convergence

@@ -14,7 +14,9 @@ Solution solved(const Scenario& s)
 {
     SolveOptions options = s.options;
     options.condition = false;   // takes longer than the solution
-    return solve(s.model, {s.conditions}, s.time, s.method, options);
+    Problem problem{s.conditions};
+    problem.unknowns = s.unknowns;
+    return solve(s.model, problem, s.time, s.method, options);
 }
 
 TEST(Verdicts, NoExampleIsSuspect)

@@ -120,8 +120,8 @@ private:
     {
         if (ends_.has_components()) {
             Ends ends = ends_;
-            ends.led_values = arrived_;
-            ends.led_share = share;
+            ends.led.values = arrived_;
+            ends.led.share = share;
             return ends;
         }
         Problem problem{{ends_.start, ends_.at_start, ends_.end, ends_.at_end}};
@@ -132,8 +132,8 @@ private:
             far.X[b] = on_the_way(arrival_.X[b], arrival_.X[b], stated.X[b], share);
         TriedEnds tried = try_close_ends(model_, problem, mesh_.start(), mesh_.end(), StartPolicy::project);
         if (!tried.ends) return {};
-        tried.ends->led_from = arrival_;
-        tried.ends->led_share = is_place ? 1 : share;
+        tried.ends->led.from = arrival_;
+        tried.ends->led.share = is_place ? 1 : share;
         return tried.ends;
     }
 

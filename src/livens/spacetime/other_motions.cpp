@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/spacetime/other_motions.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "livens/spacetime/march/components.h"
 #include "livens/spacetime/march/window_notes.h"
 
 namespace livens::inline spacetime_internal {
@@ -10,7 +13,7 @@ namespace livens::inline spacetime_internal {
 bool is_at_rest(const Model& model, const Ends& ends, const Motion& motion)
 {
     constexpr double still = 1e-6;   // lengths
-    if (!ends.is_free_periodic) return false;
+    if (!ends.periodic.is_free) return false;
     const State first = motion.at_end(0);
     for (int e = 0; e < motion.n_elements(); ++e)
         for (const double share : {0.5, 1.0}) {
@@ -20,7 +23,18 @@ bool is_at_rest(const Model& model, const Ends& ends, const Motion& motion)
     return true;
 }
 
-std::unique_ptr<Window> find_met(const Model& model, const Ends& ends, std::unique_ptr<Window> window,
+void report_rest(const Model& model, const Ends& ends, const Motion& motion, SolveReport& report)
+{
+    if (!is_at_rest(model, ends, motion)) return;
+    report.status = SolveStatus::suspect;
+    report.message =
+        "the bodies stay at rest, which is a periodic motion of any period; try: a start that is "
+        "nearer to the motion (places and velocities of bodies), or its amplitude among the "
+        "conditions at the start";
+}
+
+std::unique_ptr<Window> find_met(const Model& model, const Ends& ends, FoundNumbers& numbers,
+                                 std::unique_ptr<Window> window,
                                  const std::function<std::unique_ptr<Window>(SolveReport&)>& next,
                                  SolveReport& report)
 {
@@ -28,10 +42,15 @@ std::unique_ptr<Window> find_met(const Model& model, const Ends& ends, std::uniq
     const bool has_momenta = knows_momenta(ends.at_start) || knows_momenta(ends.at_end);
     const auto is_met = [&](Window& of) {
         const Motion* motion = of.monitor().so_far();
-        return motion == nullptr || !((has_momenta && !unmet(model, ends, *motion, {}).empty()) ||
-                                      is_at_rest(model, ends, *motion));
+        // what is kept may be the same at a place that is far, along what unfolds it
+        const bool is_closed =
+            std::ranges::all_of(numbers.unfolded, [](double x) { return std::abs(x) <= met_component; });
+        return motion == nullptr ||
+               (is_closed && !(has_momenta && !unmet(model, ends, *motion, {}).empty()) &&
+                !is_at_rest(model, ends, *motion));
     };
-    if (!report.converged() || !(has_momenta || ends.is_free_periodic) || is_met(*window)) return window;
+    if (!report.converged() || !(has_momenta || ends.periodic.is_free) || is_met(*window)) return window;
+    const FoundNumbers of_first = numbers;   // each window leaves its own there
     for (int i = 0; i < most; ++i) {
         SolveReport other;
         std::unique_ptr<Window> found = next(other);
@@ -40,6 +59,7 @@ std::unique_ptr<Window> find_met(const Model& model, const Ends& ends, std::uniq
         report = std::move(other);
         return found;
     }
+    numbers = of_first;
     return window;
 }
 

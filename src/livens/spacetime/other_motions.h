@@ -14,11 +14,15 @@ namespace livens::inline spacetime_internal {
 
 /// Of a periodic motion that nothing drives: bodies that stay where they are do so for any time.
 bool is_at_rest(const Model& model, const Ends& ends, const Motion& motion);
+/// Such a motion is suspect.
+void report_rest(const Model& model, const Ends& ends, const Motion& motion, SolveReport& report);
 
+/// `numbers`: what the window found, or stays so where there is no other.
 /// Of momenta at a place that is not known, solving compares the part that joints leave to choose: a motion
 /// may meet that and not the rest; and one that is periodic may be none. Then others are looked for; where
 /// there is none, the first one is told.
-std::unique_ptr<Window> find_met(const Model& model, const Ends& ends, std::unique_ptr<Window> window,
+std::unique_ptr<Window> find_met(const Model& model, const Ends& ends, FoundNumbers& numbers,
+                                 std::unique_ptr<Window> window,
                                  const std::function<std::unique_ptr<Window>(SolveReport&)>& next,
                                  SolveReport& report);
 

@@ -67,9 +67,9 @@ Guess PlannedPhases::next_march()
 {
     const Ends& ends = numbered_.ends();
     const int i =
-        std::exchange(n_marches_, ends.is_start_known ? static_cast<int>(shares.size()) : n_marches_ + 1);
+        std::exchange(n_marches_, ends.is_start_known() ? static_cast<int>(shares.size()) : n_marches_ + 1);
     State start = ends.start;
-    if (!ends.is_start_known && has_no_rates(start)) start.V = steady_rates();
+    if (!ends.is_start_known() && has_no_rates(start)) start.V = steady_rates();
     for (Matrix34& V : start.V) V = shares[i] * V;
     if (i > 0) told_ = "found from the stated or steady rates times " + to_text(shares[i], 3);
     return march_over_phases(numbered_.model(), start, numbered_.mesh(), degree_);

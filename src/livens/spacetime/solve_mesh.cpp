@@ -269,7 +269,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
         return one;
     };
     if (!ends.has_state()) {
-        window = find_met(model, ends, std::move(window), next, report);
+        window = find_met(model, ends, solution.numbers, std::move(window), next, report);
         if (report.converged() && !proposals.told().empty()) report.notes.push_back(proposals.told());
     }
     ConditionNumbersOfLast last(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
@@ -278,13 +278,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     if (!report.converged() && report.status != SolveStatus::cancelled)
         solution.cannot_begin = why_unseen(numbered);
     finish(tables, *window, ends, method, options.condition, last, solution);
-    if (report.converged() && is_at_rest(model, ends, solution.motion)) {
-        report.status = SolveStatus::suspect;
-        report.message =
-            "the bodies stay at rest, which is a periodic motion of any period; try: a start that "
-            "is nearer to the motion (places and velocities of bodies), or its amplitude among the "
-            "conditions at the start";
-    }
+    if (report.converged()) report_rest(model, ends, solution.motion, report);
     if (phases && !report.converged() && report.status != SolveStatus::cancelled)
         if (const std::string beginning = begin_in_words(model, mesh.start(), mesh.end()); !beginning.empty())
             report.message += "; " + beginning + ", where bodies must be, and move, as it holds them";

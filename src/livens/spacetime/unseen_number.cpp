@@ -53,7 +53,7 @@ std::vector<double> missed_with(const NumberedProblem& problem, const std::vecto
 {
     const NumberedProblem::Instance made = problem.at(values);
     const Model& model = *made.rebuilt.model;
-    State begin = made.ends.is_start_known ? made.ends.start : start;
+    State begin = made.ends.is_start_known() ? made.ends.start : start;
     begin.t = made.mesh.start();
     const Guess march = march_through(model, begin, made.mesh);
     if (!march) return {};

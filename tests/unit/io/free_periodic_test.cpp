@@ -277,6 +277,30 @@ TEST(FreePeriodic, BodiesAtRestAreNone)
     EXPECT_GT(moving.motion.at_end(0).X[0](0, 0), 0.5);
 }
 
+/// Half a period later the energy is the same at the other end of the swing: that solves what is unfolded,
+/// and is no period.
+TEST(FreePeriodic, OtherPlacesOfTheSameEnergyAreNoPeriods)
+{
+    std::string text = self_excited;
+    const std::size_t load = text.find("[[load]]");
+    text.erase(load, text.find("[start.known]") - load);
+    text = replaced(text, "axis = [1, 0, 0]\n", "axis = [1, 0, 0]\nstiffness = 4\n");
+    text = replaced(replaced(text, "velocity = [2, 0, 0]", "velocity = [0, 0, 0]"), "\"cart.x\" = 0",
+                    "\"cart.x\" = 1");
+    text += "\"cart.vx\" = 0\n";
+    for (const double share : {0.5, 1.45, 1.55, 2.4}) {
+        const Solution s =
+            solved(replaced(text, "unknown = 6.2", "unknown = " + digits(share * std::numbers::pi)));
+        if (!s.report.converged()) {
+            EXPECT_EQ(s.report.status, SolveStatus::suspect) << share << ": " << s.report.message;
+            continue;
+        }
+        expect_closed(s);
+        const double periods = s.numbers.values.at(0) / std::numbers::pi;
+        EXPECT_NEAR(periods, std::round(periods), 1e-11) << share;
+    }
+}
+
 TEST(FreePeriodic, WhatDoesNotDetermineThemIsRefused)
 {
     EXPECT_EQ(code_of(replaced(in_plane, "\"bob.vz\" = 0\n", "")), "conditions-too-few");

@@ -63,7 +63,7 @@ void expect_exact_tangent(bool is_known)
         return all;
     };
     const Ends ends = close_ends(*first.model, problem, 0, end, StartPolicy::project);
-    EXPECT_EQ(ends.is_start_known, is_known);
+    EXPECT_EQ(ends.is_start_known(), is_known);
     const TimeMesh mesh = make_time_mesh(0, end, 3, std::vector{release});
     const NumberedProblem numbered(*first.model, ends, mesh, problem.unknowns);
     const ElementRule rule = lobatto_rule(3);

@@ -46,6 +46,7 @@ std::string another_period(const Model& model, const Problem& problem, const Sol
     const Motion& motion = solution.motion;
     const bool is_whole = solution.report.converged() && motion.n_elements() > 0;
     if (!problem.conditions.is_periodic || problem.conditions.turn || !is_whole) return "";
+    if (!solution.numbers.unfolded.empty()) return "";   // nothing drives it
     const double period = motion.end() - motion.start();
     Problem next{{motion.at_end(motion.n_elements())}};
     TimeMesh mesh = motion.mesh;

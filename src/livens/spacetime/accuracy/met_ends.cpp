@@ -165,9 +165,8 @@ std::vector<std::string> unmet(const Model& model, const Ends& ends, const Motio
 {
     std::vector<std::string> reasons = unmet_components(model, ends, motion);
     const auto known = [&](Known at, Known whole) { return ends.has_components() ? whole : at; };
-    for (const End& end :
-         {End{"start", known(ends.at_start, ends.whole_at_start), ends.start, 0},
-          End{"end", known(ends.at_end, ends.whole_at_end), ends.end, motion.n_elements()}}) {
+    for (const End& end : {End{"start", known(ends.at_start, ends.whole[0]), ends.start, 0},
+                           End{"end", known(ends.at_end, ends.whole[1]), ends.end, motion.n_elements()}}) {
         if (end.known == Known::nothing) continue;
         const std::string reason = Comparison(model, motion, estimate, end).reason();
         if (!reason.empty()) reasons.push_back(reason);

@@ -46,13 +46,13 @@ public:
                             at->back());
             }
         by_numbers_.assign(n_places, DenseMatrix(static_cast<int>(ends.components.size()), ends.n_numbers));
-        const bool has_numbers = !unknowns.is_empty() || !ends.unfolding.empty();
+        const bool has_numbers = !unknowns.is_empty() || !ends.periodic.unfolding.empty();
         if (are_placed_ && has_numbers) differentiate_by_numbers(unknowns);
     }
 
     std::optional<Complaint> complaint() const
     {
-        const int needed = (ends_.is_start_known ? 0 : 2 * tables_.freedoms()) + ends_.n_numbers;
+        const int needed = (ends_.is_start_known() ? 0 : 2 * tables_.freedoms()) + ends_.n_numbers;
         const int n = static_cast<int>(ends_.components.size());
         if (!are_placed_) return {};
         if (std::optional<Complaint> why = why_dependent()) return why;
@@ -79,11 +79,12 @@ public:
     void unfold(const std::optional<AxisTurn>& turn, const std::vector<Condition>& alike, Ends& ends) const
     {
         const std::vector<StateQuantity> kept = conserved_quantities(tables_, starts_, duration_, turn);
-        ends.unfolding = unfolding(tables_, start_, alike, kept, duration_);
+        ends.periodic.unfolding = unfolding(tables_, start_, alike, kept, duration_);
         // at rest nothing changes the energy to first order
-        if (ends.unfolding.empty())
-            ends.unfolding = unfolding(tables_, starts_.front(), alike, kept, duration_);
-        for (std::size_t i = 0; i < ends.unfolding.size(); ++i) ends.conserved.push_back(kept[i].name);
+        if (ends.periodic.unfolding.empty())
+            ends.periodic.unfolding = unfolding(tables_, starts_.front(), alike, kept, duration_);
+        for (std::size_t i = 0; i < ends.periodic.unfolding.size(); ++i)
+            ends.periodic.conserved.push_back(kept[i].name);
     }
 
     /// Places at an end, or places and rates, as quantities that tell them.
@@ -98,28 +99,7 @@ public:
         return clearest(all, (has_rates ? 2 : 1) * f);
     }
 
-    /// Where forces are the same at all times and nothing drives the joints any motion may begin later.
-    bool is_driven() const
-    {
-        constexpr int n_instants = 16;
-        if (tables_.model->has_drives()) return true;
-        for (const EndPoint& point : starts_) {
-            const State state = point.state();
-            std::vector<double> X, V;
-            for (const Matrix34& x : state.X) X.insert(X.end(), std::begin(x.a), std::end(x.a));
-            for (const Matrix34& v : state.V) V.insert(V.end(), std::begin(v.a), std::end(v.a));
-            std::vector<double> first;
-            for (int i = 0; i < n_instants; ++i) {   // at shares of the time that no period divides
-                const double share = std::fmod(0.0137 + i * 0.6180339887498949, 1.0);
-                std::vector<double> F(X.size(), 0.0);
-                tables_.loads.add({ends_.start.t + share * duration_}, X.data(), V.data(), 1, F.data(),
-                                  tables_.loads.turns.begin());
-                if (first.empty()) first = F;
-                if (F != first) return true;
-            }
-        }
-        return false;
-    }
+    bool is_driven() const { return depends_on_time(tables_, starts_, ends_.start.t, duration_); }
 
 private:
     /// Of each condition the remainder at the place where it depends least on those before.
@@ -145,10 +125,13 @@ private:
     void differentiate_by_numbers(const UnknownNumbers& unknowns)
     {
         const TimeMesh mesh{{ends_.start.t, ends_.end.t}};
-        std::vector<double> guesses;
-        for (const UnknownNumber& number : unknowns.numbers) guesses.push_back(number.guess);
-        const Rebuilt whole = unknowns.rebuild(guesses);   // with the joints of all of time
-        const NumberedProblem problem(*whole.model, ends_, mesh, unknowns);
+        std::vector<double> stated;
+        for (const UnknownNumber& number : unknowns.numbers) stated.push_back(number.guess);
+        Rebuilt whole;   // with the joints of all of time
+        if (!unknowns.is_empty()) whole = unknowns.rebuild(stated);
+        const Model& model = whole.model != nullptr ? *whole.model : *tables_.model;
+        const NumberedProblem problem(model, ends_, mesh, unknowns);
+        const std::vector<double> guesses = problem.guesses();   // with those of what unfolds it
         for (int j = 0; j < problem.size(); ++j)
             for (const NumberedProblem::Sample& sample : problem.samples(j, guesses[j])) {
                 std::vector<double> values = guesses;
@@ -261,24 +244,25 @@ private:
 
     std::string reason() const
     {
-        std::string why = ends_.is_start_known
+        std::string why = ends_.is_start_known()
                               ? std::string("the state at the start is known")
                               : "the joints leave " + std::to_string(tables_.freedoms()) +
                                     " motions free, and each has a place and a rate to be known";
-        const std::string one = ends_.is_start_known ? "one condition" : "one more";
-        const int n_unknown = ends_.n_numbers - static_cast<int>(ends_.conserved.size());
+        const std::string one = ends_.is_start_known() ? "one condition" : "one more";
+        const int n_unknown = ends_.n_numbers - static_cast<int>(ends_.periodic.conserved.size());
         if (n_unknown == 1) why += "; the unknown number takes " + one;
         if (n_unknown > 1)
             why += "; the " + std::to_string(n_unknown) + " unknown numbers take " + one + " each";
-        if (ends_.n_alike > 0) why += "; periodicity gives " + std::to_string(ends_.n_alike);
-        for (const std::string& name : ends_.conserved)
+        if (ends_.periodic.n_alike > 0)
+            why += "; periodicity gives " + std::to_string(ends_.periodic.n_alike);
+        for (const std::string& name : ends_.periodic.conserved)
             why += "; no motion changes its " + name + ", so that one more tells which it is";
         return why;
     }
 
     Complaint too_many(int needed, int n) const
     {
-        if (ends_.n_alike > 0 && ends_.n_numbers == 0)
+        if (ends_.periodic.n_alike > 0 && ends_.n_numbers == 0)
             return {"conditions-too-many",
                     "time.periodic",
                     "a periodic motion with a given period takes no other conditions",
@@ -300,7 +284,7 @@ private:
     {
         const std::string free = free_in_words(needed - n);
         return {"conditions-too-few",
-                ends_.is_start_known ? "end.known" : "start.known",
+                ends_.is_start_known() ? "end.known" : "start.known",
                 "too few conditions at the ends of time",
                 std::to_string(n),
                 std::to_string(needed),
@@ -315,7 +299,7 @@ private:
         std::vector<Condition> all = ends_.components;
         const std::size_t n_stated = all.size();
         const auto at_end = std::ranges::count(all, Condition::At::end, &Condition::at);
-        const Condition::At at = 2 * at_end < static_cast<std::ptrdiff_t>(n_stated) || ends_.is_start_known
+        const Condition::At at = 2 * at_end < static_cast<std::ptrdiff_t>(n_stated) || ends_.is_start_known()
                                      ? Condition::At::end
                                      : Condition::At::start;
         for (const StateQuantity& q : candidates()) all.push_back({q, 0, at});
@@ -373,9 +357,9 @@ std::optional<Complaint> make_periodic(const ModelTables& tables, const Conditio
                              : "joints, loads or gravity are not alike after a turn about it",
                          "choose an axis about which all is alike, or give periodic = true"};
     const std::vector<Condition> alike = judgement.alike(given.turn);
-    ends.is_free_periodic = !is_driven;
+    ends.periodic.is_free = !is_driven;
     if (!is_driven) judgement.unfold(given.turn, alike, ends);
-    ends.n_numbers += static_cast<int>(ends.unfolding.size());
+    ends.n_numbers += static_cast<int>(ends.periodic.unfolding.size());
     if (!is_driven && ends.n_numbers == 0)
         return Complaint{
             "periodic-free",
@@ -388,7 +372,7 @@ std::optional<Complaint> make_periodic(const ModelTables& tables, const Conditio
             "loads take or give energy, so that the period is one number and not another",
             "let the end of time be unknown, as end = { unknown = 2.5 }, and give a condition at the start "
             "that says when it begins; or let a load or a joint depend on time"};
-    ends.n_alike = alike.size();
+    ends.periodic.n_alike = alike.size();
     ends.components.insert(ends.components.end(), alike.begin(), alike.end());
     return {};
 }
@@ -398,12 +382,12 @@ void make_given(const ModelTables& at_start, const ModelTables& at_end, Ends& en
     const Judgement judgement(at_start, at_end, ends, {});
     for (const Condition::At at : {Condition::At::start, Condition::At::end}) {
         const Known known = at == Condition::At::start ? ends.at_start : ends.at_end;
-        if (known == Known::nothing || (at == Condition::At::start && ends.is_start_known)) continue;
+        if (known == Known::nothing || (at == Condition::At::start && ends.is_start_known())) continue;
         const std::vector<Condition> all = judgement.of_state(at, known == Known::state);
         ends.components.insert(ends.components.end(), all.begin(), all.end());
     }
-    ends.whole_at_start = std::exchange(ends.at_start, Known::nothing);
-    ends.whole_at_end = std::exchange(ends.at_end, Known::nothing);
+    ends.whole[0] = std::exchange(ends.at_start, Known::nothing);
+    ends.whole[1] = std::exchange(ends.at_end, Known::nothing);
 }
 
 std::optional<Complaint> why_undetermined(const ModelTables& at_start, const ModelTables& at_end,

@@ -124,6 +124,29 @@ State turned_state(const AxisTurn& turn, State state)
 
 }   // namespace
 
+bool depends_on_time(const ModelTables& tables, const std::deque<EndPoint>& places, double start,
+                     double duration)
+{
+    constexpr int n_instants = 16;
+    if (tables.model->has_drives()) return true;
+    for (const EndPoint& point : places) {
+        const State state = point.state();
+        std::vector<double> X, V;
+        for (const Matrix34& x : state.X) X.insert(X.end(), std::begin(x.a), std::end(x.a));
+        for (const Matrix34& v : state.V) V.insert(V.end(), std::begin(v.a), std::end(v.a));
+        std::vector<double> first;
+        for (int i = 0; i < n_instants; ++i) {   // at shares of the time that no period divides
+            const double share = std::fmod(0.0137 + i * 0.6180339887498949, 1.0);
+            std::vector<double> F(X.size(), 0.0);
+            tables.loads.add({start + share * duration}, X.data(), V.data(), 1, F.data(),
+                             tables.loads.turns.begin());
+            if (first.empty()) first = F;
+            if (F != first) return true;
+        }
+    }
+    return false;
+}
+
 std::vector<StateQuantity> conserved_quantities(const ModelTables& tables, const std::deque<EndPoint>& places,
                                                 double duration, const std::optional<AxisTurn>& turn)
 {
@@ -142,7 +165,8 @@ std::vector<StateQuantity> conserved_quantities(const ModelTables& tables, const
         std::vector<Condition> rows;
         for (const StateQuantity& one : kept) rows.push_back({one});
         const auto is_new = [&](const EndPoint& at) {
-            const Remainder last = remainders(rows_at({&tables, &tables}, rows, {&at, &at}, duration, {})).back();
+            const Remainder last =
+                remainders(rows_at({&tables, &tables}, rows, {&at, &at}, duration, {})).back();
             return last.norm > dependent * std::max(last.of, 1e-3);
         };
         if (!std::ranges::any_of(places, is_new)) kept.pop_back();

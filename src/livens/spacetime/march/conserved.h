@@ -12,6 +12,11 @@
 
 namespace livens::inline spacetime_internal {
 
+/// Whether a joint is driven, or forces at these places are others at other instants of the duration: else
+/// any motion may begin later.
+bool depends_on_time(const ModelTables& tables, const std::deque<EndPoint>& places, double start,
+                     double duration);
+
 /// Of energy, linear momenta and angular momenta those that no motion changes, each independent of the
 /// others; with a turn of which none changes them either. Judged at these places, which nobody chose;
 /// `duration`: s, in which things change.

@@ -46,7 +46,7 @@ std::optional<Complaint> close_guesses(const Model& whole, const Problem& proble
     std::optional<Complaint> given = close_end(last, ends.end, ends.at_end, policy, nullptr, ends);
     if (!given) given = close_end(model, ends.start, ends.at_start, policy, nullptr, ends);
     if (given) return given;
-    ends.is_start_known = is_over_phases(whole, problem) && ends.at_start == Known::state;
+    if (is_over_phases(whole, problem) && ends.at_start == Known::state) ends.start_is = Ends::Start::known;
     TriedStart start = try_consistent_start(model, ends.start, StartPolicy::project);
     if (!start.closed) return std::move(start.why);
     ends.start = std::move(start.closed->start);

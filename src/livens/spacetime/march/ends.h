@@ -2,6 +2,7 @@
 // The ends of time as the engine sees them: conditions, closed and consistent.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,23 @@
 
 namespace livens::inline spacetime_internal {
 
+/// Of an end that is led: momenta that are known are this share of the way from those of another state,
+/// and components from other values, if there are any.
+struct LedEnds {
+    State from{};
+    double share = 1;
+    std::vector<double> values{};
+};
+
+/// A periodic motion keeps its energy, say, so that its components are not independent: for each quantity
+/// that it keeps by how much they may miss that it changes, times a number that comes out as 0.
+struct PeriodicEnds {
+    std::size_t n_alike = 0;   ///< the last components
+    std::vector<std::vector<double>> unfolding{};
+    std::vector<std::string> conserved{};   ///< their names
+    bool is_free = false;                   ///< nothing that depends on time sets its period
+};
+
 /// States at both ends that fulfil the joints where they are known.
 struct Ends {
     Known at_start = Known::state, at_end = Known::nothing;
@@ -19,35 +37,31 @@ struct Ends {
     std::vector<int> independent_at_end{};   ///< where other joints act there
     std::vector<int> redundant;
     std::vector<std::string> notes;
-    /// Momenta that are known at an end which is led: this share of the way from those of another state.
-    State led_from{};
-    double led_share = 1;
+    LedEnds led{};
     /// Component by component, instead of what is known above: states are then guesses that meet what is
-    /// stated at their end as far as they can. With the values that are led from, if they are.
+    /// stated at their end as far as they can.
     std::vector<Condition> components{};
-    std::vector<double> led_values{};
-    std::size_t n_alike = 0;   ///< the last of these, of a periodic motion
+    PeriodicEnds periodic{};
     int n_numbers = 0;   ///< unknown ones, which as many more components decide, with those of what unfolds
-    /// A periodic motion keeps its energy, say, so that its last components are not independent: for each
-    /// quantity that it keeps by how much they may miss that it changes, times a number that comes out as 0.
-    std::vector<std::vector<double>> unfolding{};
-    std::vector<std::string> conserved{};   ///< their names
-    bool is_free_periodic = false;          ///< nothing that depends on time sets its period
-    /// What of these is a whole state, or its places: then all of it is compared in the end.
-    Known whole_at_start = Known::nothing, whole_at_end = Known::nothing;
+    /// What of components is a whole state at the start and at the end, or its places: then all is compared.
+    std::array<Known, 2> whole{Known::nothing, Known::nothing};
     bool is_end_guessed = false;   ///< else the state at the end is made of that at the start
-    /// The state at the start is known as it stands, beside components at the end that decide numbers alone.
-    bool is_start_known = false;
-    /// Of one phase among others: momenta at both ends are unknown, and what is before it gives the start.
-    bool is_phase = false;
+    enum class Start {
+        open,
+        known,     ///< as it stands, beside components at the end that decide numbers alone
+        of_phase   ///< given by the phase before; momenta at both ends are unknown
+    };
+    Start start_is = Start::open;
 
+    bool is_start_known() const { return start_is == Start::known; }
+    bool is_phase() const { return start_is == Start::of_phase; }
     /// What condition i is to be.
     double value(std::size_t i) const
     {
-        const double from = led_values.empty() ? components[i].value : led_values[i];
-        return led_share * components[i].value + (1 - led_share) * from;
+        const double from = led.values.empty() ? components[i].value : led.values[i];
+        return led.share * components[i].value + (1 - led.share) * from;
     }
-    bool has_components() const { return is_phase || !components.empty(); }
+    bool has_components() const { return is_phase() || !components.empty(); }
     bool has_state() const { return at_start == Known::state || at_end == Known::state; }
     /// Windows follow each other from the end of time.
     bool is_backwards() const { return at_end == Known::state; }

@@ -152,7 +152,7 @@ NewtonReport March::attempt(const Elements& of)
                     n_runs > 1 && outcome.status == SolveStatus::converged};
     }
     if (goes_on()) outcome = first;
-    has_iterate_ = is_solved || n_runs > 0;
+    attempt_.has_iterate = is_solved || n_runs > 0;
     outcome.iterations = iterations;
     report_.newton_iterations += iterations;
     report_.most_iterations = std::max(report_.most_iterations, iterations);
@@ -312,7 +312,7 @@ bool March::explain(const Elements& of, const NewtonReport& outcome)
     const bool is_finite =
         outcome.status != SolveStatus::not_finite && outcome.status != SolveStatus::cancelled;
     SolveReport ignored;
-    if (options_.keeps_iterate && has_iterate_ && is_finite) window_.close({}, ignored);
+    if (options_.keeps_iterate && attempt_.has_iterate && is_finite) window_.close({}, ignored);
     return fail(outcome.status, message);
 }
 

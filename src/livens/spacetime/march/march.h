@@ -23,9 +23,10 @@ struct RetryCounts {
 
 /// Where the open window's solution comes from.
 struct Attempt {
-    Guess guess{};             ///< that it started from
-    bool is_march = false;     ///< see WindowOptions::Proposal
-    bool is_rescued = false;   ///< converged from another guess than the first
+    Guess guess{};              ///< that it started from
+    bool is_march = false;      ///< see WindowOptions::Proposal
+    bool is_rescued = false;    ///< converged from another guess than the first
+    bool has_iterate = false;   ///< else nothing proposed where to begin
 };
 
 class March {
@@ -85,7 +86,6 @@ private:
     EventLocator events_;
     std::variant<GivenMesh, AdaptiveElements> partition_;   // in place: many marches are an element long
     Attempt attempt_;
-    bool has_iterate_ = false;   // else nothing proposed where to begin
     RetryCounts troubles_;
     int done_ = 0;      // elements
     double time_ = 0;   // up to which they are solved

@@ -44,7 +44,7 @@ NumberedProblem::NumberedProblem(const Model& model, const Ends& ends, const Tim
                                  const UnknownNumbers& unknowns)
     : model_(model), ends_(ends), mesh_(mesh), unknowns_(unknowns), numbers_(unknowns.numbers)
 {
-    for (const std::string& name : ends.conserved) numbers_.push_back({"change of " + name});
+    for (const std::string& name : ends.periodic.conserved) numbers_.push_back({"change of " + name});
     if (size() > 0) anchors_ = anchors_of(model, mesh.start(), mesh.end());
 }
 
@@ -64,7 +64,7 @@ NumberedProblem::Instance NumberedProblem::at(std::span<const double> values) co
         throw InputError({"time-end", "time.end", "the end of time is not after its start",
                           to_text(rebuilt.end, 6), "> " + to_text(rebuilt.start, 6), "", ""});
     // any state is the one in which a motion of no length ends
-    if (ends_.n_alike > 0 && rebuilt.end - rebuilt.start < 0.1 * (mesh_.end() - mesh_.start()))
+    if (ends_.periodic.n_alike > 0 && rebuilt.end - rebuilt.start < 0.1 * (mesh_.end() - mesh_.start()))
         throw InputError({"time-end", "time.end", "the period is less than a tenth of its guess",
                           to_text(rebuilt.end - rebuilt.start, 6), "", "",
                           "give a better guess of it, or of the state at the start"});
@@ -90,7 +90,8 @@ Rebuilt NumberedProblem::as_it_is() const
             mesh_.start(),
             mesh_.end(),
             {},
-            ends_.n_alike > 0 && ends_.components.back().turn ? ends_.components.back().turn->angle : 0};
+            ends_.periodic.n_alike > 0 && ends_.components.back().turn ? ends_.components.back().turn->angle
+                                                                       : 0};
 }
 
 /// Those of a periodic motion follow, of the same names in this model; none is more off than what unfolds it.
@@ -105,7 +106,7 @@ void NumberedProblem::put_components(const Rebuilt& rebuilt, std::span<const dou
         if (one.turn) one.turn->angle = rebuilt.turn;
         one.value = 0;
         for (std::size_t c = 0; c < unfolded.size(); ++c)
-            one.value += unfolded[c] * ends_.unfolding[c][i - n];
+            one.value += unfolded[c] * ends_.periodic.unfolding[c][i - n];
     }
 }
 

@@ -47,7 +47,7 @@ private:
     void put_components(const Rebuilt& rebuilt, std::span<const double> unfolded,
                         std::vector<Condition>& all) const;
     /// Components that are given, before those of a periodic motion.
-    std::size_t n_given() const { return ends_.components.size() - ends_.n_alike; }
+    std::size_t n_given() const { return ends_.components.size() - ends_.periodic.n_alike; }
 
     const Model& model_;
     const Ends& ends_;

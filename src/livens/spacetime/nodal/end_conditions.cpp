@@ -26,7 +26,8 @@ bool MissedConditions::compare(const EndPoint& first, const EndPoint& last, doub
         const StateQuantity& q = condition.quantity;
         const bool at_start = condition.at == Condition::At::start;
         double found = (at_start ? first : last).value(quantities_[at_start ? 0 : 1][i]);
-        if (q.counts_turns() && !at_start && !condition.turn) found = followed(q.coordinate, start_of_turns(ends_, q));
+        if (q.counts_turns() && !at_start && !condition.turn)
+            found = followed(q.coordinate, start_of_turns(ends_, q));
         if (q.counts_turns() && at_start) found = turned_to(found, ends_.value(i));
         if (condition.at == Condition::At::both) {
             const double begin = first.value(q);
@@ -125,19 +126,20 @@ bool EndConditions::evaluate(const WindowLayout& layout, const Nodes& nodes)
 std::vector<double> EndConditions::roundings() const
 {
     std::vector<double> all = missed_.roundings();
-    if (ends_.is_phase) all.resize(static_cast<std::size_t>(2 * tables_.freedoms()), 0.0);
+    if (ends_.is_phase()) all.resize(static_cast<std::size_t>(2 * tables_.freedoms()), 0.0);
     return all;
 }
 
 void EndConditions::differentiate(const WindowLayout& layout, const Nodes& nodes)
 {
-    const int f = tables_.freedoms(), m = ends_.is_phase ? 2 * f : static_cast<int>(ends_.components.size());
+    const int f = tables_.freedoms(),
+              m = ends_.is_phase() ? 2 * f : static_cast<int>(ends_.components.size());
     closing_.assign(static_cast<std::size_t>(m) * 4 * static_cast<std::size_t>(f), 0.0);
     for (const int end : {0, 1}) {
         const ConstraintBasis& basis = nodes.basis(end == 0 ? 0 : layout.n_nodes() - 1);
         DenseMatrix D(m, 2 * f);
-        if (!ends_.is_phase) D = missed_.derivatives(end == 1, points_[end], basis);
-        for (int i = 0; ends_.is_phase && end == 0 && i < m; ++i) D(i, i) = 1;
+        if (!ends_.is_phase()) D = missed_.derivatives(end == 1, points_[end], basis);
+        for (int i = 0; ends_.is_phase() && end == 0 && i < m; ++i) D(i, i) = 1;
         for (int i = 0; i < m; ++i) {
             double* row = closing_.data() + static_cast<std::ptrdiff_t>(i) * 4 * f;
             for (int j = 0; j < f; ++j) {

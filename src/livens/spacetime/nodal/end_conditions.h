@@ -79,7 +79,7 @@ public:
     {
         const std::vector<double>& rows = missed_.rows();
         balances.insert(balances.end(), rows.begin(), rows.end());
-        if (ends_.is_phase)
+        if (ends_.is_phase())
             balances.resize(balances.size() + static_cast<std::size_t>(2 * tables_.freedoms()));
         return balances;
     }

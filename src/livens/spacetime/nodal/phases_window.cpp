@@ -25,7 +25,7 @@ Ends ends_of(const PhasePlan::Phase& plan, const TimeMesh& mesh)
 {
     Ends ends;
     ends.at_start = ends.at_end = Known::nothing;
-    ends.is_phase = true;
+    ends.start_is = Ends::Start::of_phase;
     ends.start = ends.end = plan.start;
     ends.start.t = mesh.start();
     ends.end.t = mesh.end();
@@ -35,8 +35,8 @@ Ends ends_of(const PhasePlan::Phase& plan, const TimeMesh& mesh)
 
 }   // namespace
 
-PhasesWindow::Phase::Phase(const Model& model, const TimeMesh& whole, const PhasePlan::Phase& plan,
-                           const ElementRule& rule)
+WindowPhase::WindowPhase(const Model& model, const TimeMesh& whole, const PhasePlan::Phase& plan,
+                         const ElementRule& rule)
     : acting(acting_at(model, 0.5 * (whole.ends[plan.first] + whole.ends[plan.last]))),
       mesh(stretch_of(whole, plan.first, plan.last)), ends(ends_of(plan, mesh)),
       tables(acting.model, plan.independent), window(tables, mesh, ends, rule)
@@ -55,7 +55,7 @@ PhasesWindow::PhasesWindow(std::shared_ptr<const Model> model, const TimeMesh& m
     }
     missed_ = std::make_unique<MissedConditions>(phases_.back()->tables, ends_);
     for (const Body& body : model_->bodies()) stated_.push_back(body.X);
-    if (!ends_.is_start_known) return;
+    if (!ends_.is_start_known()) return;
     EndPoint start(phases_.front()->tables);
     if (!start.place(ends_.start))
         throw InputError({"start-position", "start", "the joints cannot hold the bodies where they start", "",
@@ -150,7 +150,7 @@ int PhasesWindow::n_unknowns() const
 bool PhasesWindow::residual()
 {
     const std::vector<double> zeros(start_X_.size(), 0.0);
-    if (ends_.is_start_known &&
+    if (ends_.is_start_known() &&
         !phases_.front()->system().begin_with(start_X_.data(), zeros.data(), start_momenta_))
         return false;
     for (std::size_t k = 0; k < phases_.size(); ++k) {

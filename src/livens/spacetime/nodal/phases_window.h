@@ -24,6 +24,36 @@ struct PhasePlan {
     std::vector<Phase> phases;
 };
 
+/// Elements of a phase with its joints.
+struct WindowPhase {
+    WindowPhase(const Model& model, const TimeMesh& whole, const PhasePlan::Phase& plan,
+                const ElementRule& rule);
+
+    int f() const { return tables.freedoms(); }
+    NodalSystem& system() { return window.equations(); }
+    const NodalSystem& system() const { return window.equations(); }
+    int last_node() const { return window.equations().layout().n_nodes() - 1; }
+
+    ActingModel acting;
+    TimeMesh mesh;
+    Ends ends;
+    ModelTables tables;
+    NodalWindow window;
+};
+/// Free motions of a node where tangents were formed.
+struct PhaseFrame {
+    std::vector<double> X, maps;
+    DenseMatrix z;   ///< scaled twists
+};
+/// Of a phase where its tangent was formed.
+struct PhaseResponse {
+    PhaseFrame start, end;
+    std::vector<std::vector<double>> by_start, by_numbers;   ///< increments
+    DenseMatrix end_by_start, end_by_numbers;                ///< along free motions, then momenta along them
+    DenseMatrix start_by_end;                                ///< of the next phase
+    DenseMatrix start_by_all;   ///< of this phase by what the condensed system is for
+};
+
 /// Of lobatto. The first node of a phase is the last one of the phase before, with its momenta: what is left
 /// to be found are the nodes inside, the start if it is not known, and numbers.
 class PhasesWindow final : public BorderedWindow, private ElementMonitor, private NewtonProblem {
@@ -49,34 +79,9 @@ public:
     void solve_for(const BorderedWindow& other, std::span<double> dx) override;
 
 private:
-    struct Phase {
-        Phase(const Model& model, const TimeMesh& whole, const PhasePlan::Phase& plan,
-              const ElementRule& rule);
-
-        int f() const { return tables.freedoms(); }
-        NodalSystem& system() { return window.equations(); }
-        const NodalSystem& system() const { return window.equations(); }
-        int last_node() const { return window.equations().layout().n_nodes() - 1; }
-
-        ActingModel acting;
-        TimeMesh mesh;
-        Ends ends;
-        ModelTables tables;
-        NodalWindow window;
-    };
-    /// Free motions of a node where tangents were formed.
-    struct Frame {
-        std::vector<double> X, maps;
-        DenseMatrix z;   ///< scaled twists
-    };
-    /// Of a phase where its tangent was formed.
-    struct Response {
-        Frame start, end;
-        std::vector<std::vector<double>> by_start, by_numbers;   ///< increments
-        DenseMatrix end_by_start, end_by_numbers;   ///< along free motions, then momenta along them
-        DenseMatrix start_by_end;                   ///< of the next phase
-        DenseMatrix start_by_all;                   ///< of this phase by what the condensed system is for
-    };
+    using Phase = WindowPhase;
+    using Frame = PhaseFrame;
+    using Response = PhaseResponse;
 
     std::vector<Unseen> take_unseen() override;
     const Motion* so_far() override { return &motion_; }
@@ -96,7 +101,7 @@ private:
     {
         return static_cast<std::size_t>(phase.window.equations().n_unknowns());
     }
-    int n_start() const { return ends_.is_start_known ? 0 : 2 * phases_.front()->f(); }
+    int n_start() const { return ends_.is_start_known() ? 0 : 2 * phases_.front()->f(); }
     int n_all() const { return n_start() + ends_.n_numbers; }
     static Frame frame_of(const Phase& phase, int node);
     /// Along free motions, then momenta along them, of an increment of places and momenta.

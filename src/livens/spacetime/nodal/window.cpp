@@ -75,9 +75,9 @@ bool NodalWindow::open(int first, int last, SolveReport& report)
     layout_.n_numbers = ends_.n_numbers;
     if (!is_ready_ && !begin_front(report)) return false;
     if (layout_.X_last && !set_state(far_, ends_.end, report)) return false;
-    layout_.angles = layout_.X_first  ? end_.here().angles
-                     : ends_.is_phase ? tables_.loads.turns.begin(ends_.start)
-                                      : tables_.loads.turns.begin();
+    layout_.angles = layout_.X_first    ? end_.here().angles
+                     : ends_.is_phase() ? tables_.loads.turns.begin(ends_.start)
+                                        : tables_.loads.turns.begin();
     system_.open(layout_, layout_.X_first ? &end_.here() : nullptr, layout_.X_last ? &far_ : nullptr);
     if (ends_.has_components()) return true;   // which momenta, is decided with the nodes
     if (!layout_.X_first && layout_.P_first)
@@ -89,7 +89,7 @@ bool NodalWindow::open(int first, int last, SolveReport& report)
 /// Six numbers a body, about its reference point.
 void NodalWindow::set_momenta(const State& given, std::vector<double>& momenta) const
 {
-    const double share = given.t == ends_.led_from.t ? ends_.led_share : 1;
+    const double share = given.t == ends_.led.from.t ? ends_.led.share : 1;
     for (int b = 0; b < tables_.n_bodies(); ++b) {
         double six[6], before[6] = {};
         const auto momenta_of = [&](const State& state, double* to) {
@@ -97,7 +97,7 @@ void NodalWindow::set_momenta(const State& given, std::vector<double>& momenta) 
             twist::rows(state.X[b].a, of_body.a, to);
         };
         momenta_of(given, six);
-        if (share != 1) momenta_of(ends_.led_from, before);
+        if (share != 1) momenta_of(ends_.led.from, before);
         for (int i = 0; i < tables_.bodies[b].dofs; ++i)
             momenta[tables_.bodies[b].first + i] = share * six[i] + (1 - share) * before[i];
     }
