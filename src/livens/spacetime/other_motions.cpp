@@ -10,6 +10,16 @@
 
 namespace livens::inline spacetime_internal {
 
+namespace {
+
+/// What is kept may be the same at a place that is far, along what unfolds a periodic motion.
+bool is_closed(const FoundNumbers& numbers)
+{
+    return std::ranges::all_of(numbers.unfolded, [](double x) { return std::abs(x) <= met_component; });
+}
+
+}   // namespace
+
 bool is_at_rest(const Model& model, const Ends& ends, const Motion& motion)
 {
     constexpr double still = 1e-6;   // lengths
@@ -23,14 +33,20 @@ bool is_at_rest(const Model& model, const Ends& ends, const Motion& motion)
     return true;
 }
 
-void report_rest(const Model& model, const Ends& ends, const Motion& motion, SolveReport& report)
+void report_no_period(const Model& model, const Ends& ends, const FoundNumbers& numbers, const Motion& motion,
+                      SolveReport& report)
 {
-    if (!is_at_rest(model, ends, motion)) return;
-    report.status = SolveStatus::suspect;
-    report.message =
-        "the bodies stay at rest, which is a periodic motion of any period; try: a start that is "
-        "nearer to the motion (places and velocities of bodies), or its amplitude among the "
-        "conditions at the start";
+    if (!is_closed(numbers)) {
+        report.status = SolveStatus::suspect;
+        report.message = "the motion ends where what it keeps is as at its start, and is elsewhere, as after "
+                         "half a period; try: another guess of the period, or more elements";
+    } else if (is_at_rest(model, ends, motion)) {
+        report.status = SolveStatus::suspect;
+        report.message = "the bodies stay at rest, which is a periodic motion of any period; try: a start "
+                         "that is nearer to "
+                         "the motion (places and velocities of bodies), or its amplitude among the "
+                         "conditions at the start";
+    }
 }
 
 std::unique_ptr<Window> find_met(const Model& model, const Ends& ends, FoundNumbers& numbers,
@@ -42,11 +58,8 @@ std::unique_ptr<Window> find_met(const Model& model, const Ends& ends, FoundNumb
     const bool has_momenta = knows_momenta(ends.at_start) || knows_momenta(ends.at_end);
     const auto is_met = [&](Window& of) {
         const Motion* motion = of.monitor().so_far();
-        // what is kept may be the same at a place that is far, along what unfolds it
-        const bool is_closed =
-            std::ranges::all_of(numbers.unfolded, [](double x) { return std::abs(x) <= met_component; });
         return motion == nullptr ||
-               (is_closed && !(has_momenta && !unmet(model, ends, *motion, {}).empty()) &&
+               (is_closed(numbers) && !(has_momenta && !unmet(model, ends, *motion, {}).empty()) &&
                 !is_at_rest(model, ends, *motion));
     };
     if (!report.converged() || !(has_momenta || ends.periodic.is_free) || is_met(*window)) return window;

@@ -14,8 +14,9 @@ namespace livens::inline spacetime_internal {
 
 /// Of a periodic motion that nothing drives: bodies that stay where they are do so for any time.
 bool is_at_rest(const Model& model, const Ends& ends, const Motion& motion);
-/// Such a motion is suspect.
-void report_rest(const Model& model, const Ends& ends, const Motion& motion, SolveReport& report);
+/// Such a motion is suspect, and one that ends elsewhere than it began.
+void report_no_period(const Model& model, const Ends& ends, const FoundNumbers& numbers, const Motion& motion,
+                      SolveReport& report);
 
 /// `numbers`: what the window found, or stays so where there is no other.
 /// Of momenta at a place that is not known, solving compares the part that joints leave to choose: a motion

@@ -278,7 +278,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     if (!report.converged() && report.status != SolveStatus::cancelled)
         solution.cannot_begin = why_unseen(numbered);
     finish(tables, *window, ends, method, options.condition, last, solution);
-    if (report.converged()) report_rest(model, ends, solution.motion, report);
+    if (report.converged()) report_no_period(model, ends, solution.numbers, solution.motion, report);
     if (phases && !report.converged() && report.status != SolveStatus::cancelled)
         if (const std::string beginning = begin_in_words(model, mesh.start(), mesh.end()); !beginning.empty())
             report.message += "; " + beginning + ", where bodies must be, and move, as it holds them";

@@ -295,7 +295,7 @@ TEST(FreePeriodic, OtherPlacesOfTheSameEnergyAreNoPeriods)
             EXPECT_EQ(s.report.status, SolveStatus::suspect) << share << ": " << s.report.message;
             continue;
         }
-        expect_closed(s);
+        ASSERT_NO_FATAL_FAILURE(expect_closed(s));
         const double periods = s.numbers.values.at(0) / std::numbers::pi;
         EXPECT_NEAR(periods, std::round(periods), 1e-11) << share;
     }

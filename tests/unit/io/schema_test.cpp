@@ -37,6 +37,7 @@ std::string file_text(const std::string& name)
 const std::vector<std::string> documents{file_text("tests/fuzz/corpus/every_key_of_bodies.toml"),
                                          file_text("tests/fuzz/corpus/every_key_of_shapes.toml"),
                                          file_text("tests/fuzz/corpus/accuracy.toml"),
+                                         file_text("tests/fuzz/corpus/periodic_but_for_a_turn.toml"),
                                          file_text("tests/fuzz/corpus/every_key_of_joints_and_loads.toml"),
                                          file_text("tests/fuzz/corpus/every_key_of_mechanisms.toml"),
                                          file_text("tests/fuzz/corpus/every_key_of_laws.toml"),
@@ -84,6 +85,7 @@ const Table& table_of(const std::string& header, const std::string& type)
     std::string heading = header.empty() ? "top of the file" : header;
     if (header == "[load.table]") heading = (type == "actuator" ? "table of an " : "table of a ") + type;
     if (header.starts_with("[drive.")) heading = header.substr(7, header.size() - 8) + " of a drive";
+    if (header == "[time.periodic]") heading = "periodic of [time]";
     if (header == "[joint.curve]") heading = "curve of a slot";
     if (header == "[joint.law]") heading = "law of a coupling";
     if (header == "[[joint.over]]") heading = "point of a rope";
