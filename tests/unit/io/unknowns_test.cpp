@@ -205,6 +205,19 @@ TEST(UnknownsOfFiles, MayBeThePlaceOfAJointOfAClosedLoop)
     EXPECT_NEAR(std::hypot(cx - bx, cz - bz), 2, 1e-10);
 }
 
+/// Elements that are too long for their degree: whatever comes of it, it is judged at its own nodes.
+TEST(UnknownsOfFiles, OneElementOrTwoAreEnough)
+{
+    for (const char* elements : {"elements = 1", "elements = 2", "elements = 3"}) {
+        const ScenarioResult result = read(replaced(pendulum, "elements = 20", elements));
+        ASSERT_TRUE(result.scenario.has_value()) << shown(result);
+        const SolvedScenario s = solved(*result.scenario);
+        ASSERT_TRUE(s.solution.report.converged()) << elements << ": " << s.solution.report.message;
+        EXPECT_NEAR(s.solution.numbers.values.at(0), 0.4376, 0.07) << elements;
+        EXPECT_LT(s.solution.report.moved_by_rounding, 1e-10) << elements;
+    }
+}
+
 TEST(UnknownsOfFiles, ThatAreWrongAreRefusedWhereTheyStand)
 {
     struct Wrong {

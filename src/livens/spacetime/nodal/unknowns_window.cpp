@@ -144,6 +144,7 @@ double UnknownsWindow::size_of(std::span<const double> dx) const
 
 AcceptedElements UnknownsWindow::close(const AcceptanceCriteria& criteria, SolveReport& report)
 {
+    is_formed_ = factorise();   // as long as nodes have their bases, of which closing takes some
     const AcceptedElements closed = now_->window->close(criteria, report);
     const auto n_stated = problem_.n_stated();
     found_.values.assign(now_->values.begin(), now_->values.begin() + n_stated);
@@ -154,7 +155,7 @@ AcceptedElements UnknownsWindow::close(const AcceptanceCriteria& criteria, Solve
 
 Uncertainty UnknownsWindow::uncertainty()
 {
-    if (!factorise()) return {1, "the motion with its unknown numbers", 1};
+    if (!is_formed_) return {1, "the motion with its unknown numbers", 1};
     Uncertainty found = now_->window->uncertainty();
     for (int i = 0; i < problem_.size(); ++i) {
         const double moved = found.numbers.empty() ? 0 : found.numbers[i];

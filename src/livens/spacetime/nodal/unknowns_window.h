@@ -82,6 +82,7 @@ private:
     Maker maker_;
     FoundNumbers& found_;
     int first_ = 0, last_ = 0;
+    bool is_formed_ = false;       // at the point that was closed
     Shared now_, kept_, formed_;   // the current point, the kept one, that of the factors
     std::string why_;
 };
