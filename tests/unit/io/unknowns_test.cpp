@@ -2,6 +2,7 @@
 // Unknown numbers in files: { unknown = guess, low = .., high = .. } in place of a number.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 
 #include "livens/dynamics/start/prepared.h"
@@ -216,6 +217,25 @@ TEST(UnknownsOfFiles, OneElementOrTwoAreEnough)
         EXPECT_NEAR(s.solution.numbers.values.at(0), 0.4376, 0.07) << elements;
         EXPECT_LT(s.solution.report.moved_by_rounding, 1e-10) << elements;
     }
+}
+
+/// Gravity, and a motion scaled with the mass: of a point mass and its friction only the ratio shows.
+TEST(UnknownsOfFiles, ThatActAlikeAreNotDetermined)
+{
+    const std::string light = replaced(pendulum, "inertia = [0.1, 0.1, 0.1]", "inertia = [1e-9, 1e-9, 1e-9]");
+    const ScenarioResult one = read(light);
+    ASSERT_TRUE(one.scenario.has_value()) << shown(one);
+    const SolvedScenario s = solved(*one.scenario);
+    ASSERT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+    const State end = s.solution.motion.at_end(20);
+    char rate[40];
+    std::snprintf(rate, sizeof rate, "%.17g", angular_velocity(end.X[0], end.V[0])[1]);
+    std::string both = replaced(light, "mass = 1\n", "mass = { unknown = 1.1, low = 0.2, high = 5 }\n");
+    both += std::string("\"pivot.angle_rate\" = ") + rate + "\n";
+    const ScenarioResult two = read(both);
+    ASSERT_TRUE(two.scenario.has_value()) << shown(two);
+    const SolvedScenario alike = solved(*two.scenario);
+    EXPECT_FALSE(alike.solution.report.converged());   // free along a valley, or at a bound
 }
 
 TEST(UnknownsOfFiles, ThatAreWrongAreRefusedWhereTheyStand)
