@@ -134,7 +134,8 @@ bool PhasesWindow::factorise()
         row += phases_[k]->system().conditions()->behind(phases_[k]->system().balances().reduced()).size();
         if (k + 1 < phases_.size()) responses_[k].start_by_end = handed_on(k);
     }
-    return condense(by_numbers);
+    is_formed_ = condense(by_numbers);
+    return is_formed_;
 }
 
 /// The system of the conditions: for the start, if it is not known, and for numbers.

@@ -72,6 +72,7 @@ bool PhasesWindow::open(int, int, SolveReport& report)
 
 bool PhasesWindow::start_from(const Guess& guess)
 {
+    is_formed_ = false;
     return guess &&
            std::ranges::all_of(phases_, [&](const auto& phase) { return phase->window.start_from(guess); });
 }
@@ -90,6 +91,7 @@ State PhasesWindow::at(int element_end) const
 AcceptedElements PhasesWindow::close(const AcceptanceCriteria& criteria, SolveReport& report)
 {
     AcceptedElements all;
+    if (!is_formed_) is_formed_ = factorise();   // closing takes bases of nodes
     motion_ = {};
     for (const auto& phase : phases_) {
         const int before = all.n_elements;
@@ -177,6 +179,7 @@ bool PhasesWindow::residual()
 
 bool PhasesWindow::move(std::span<const double> dx, double damping)
 {
+    is_formed_ = false;
     for (const auto& phase : phases_) {
         const std::size_t n = n_of(*phase);
         if (!phase->system().move(dx.first(n), damping)) return false;
@@ -193,6 +196,7 @@ void PhasesWindow::keep()
 bool PhasesWindow::adopt(const BorderedWindow& other, bool is_pulled)
 {
     const auto& others = static_cast<const PhasesWindow&>(other).phases_;
+    is_formed_ = false;
     for (std::size_t k = 0; k < phases_.size(); ++k)
         if (!phases_[k]->system().adopt(others[k]->system(), is_pulled)) return false;
     return true;
@@ -255,7 +259,7 @@ void PhasesWindow::solve_for(const BorderedWindow& window, std::span<double> dx)
 Uncertainty PhasesWindow::uncertainty()
 {
     constexpr int n_tries = 4;
-    if (!factorise()) return {1, "the motion with what is unknown of it", 1, {}};
+    if (!is_formed_) return {1, "the motion with what is unknown of it", 1, {}};
     Uncertainty found;
     found.numbers.assign(static_cast<std::size_t>(ends_.n_numbers), 0.0);
     Scatter scatter;

@@ -126,6 +126,7 @@ private:
     std::vector<Response> responses_;               // of the last factors
     DenseMatrix start_rows_, end_rows_;             // conditions by the start and by the end
     DenseLU condensed_;
+    bool is_formed_ = false;   // the factors are those of the current point
     Motion motion_;
 };
 
