@@ -1638,8 +1638,8 @@ livens_mutant(NAME all_is_driven
 # The end of a motion is compared as it stands, not turned back.
 livens_mutant(NAME turns_are_not_taken_back
               FILE multibody/state_quantities.cpp
-              OLD [[const Turn back = quantity.before->back();]]
-              NEW [[const Turn back{0};]]
+              OLD [[const AxisTurn back = quantity.before->back();]]
+              NEW [[const AxisTurn back{0};]]
               TESTS_OF unit_io
               MUST_FAIL FreePeriodic.SphericalPendulumsComeBackTurned)
 
@@ -1670,16 +1670,16 @@ livens_mutant(NAME any_turn_is_a_symmetry
 # A motion is unfolded by a direction that its other conditions reach as well.
 livens_mutant(NAME unfolded_along_what_is_known
               FILE spacetime/march/numbered.cpp
-              OLD [[one.value += unfolded[c] * ends_.unfolding[c][i - n];]]
-              NEW [[one.value += 0 * unfolded[c] * ends_.unfolding[c][i - n];]]
+              OLD [[one.value += unfolded[c] * ends_.periodic.unfolding[c][i - n];]]
+              NEW [[one.value += 0 * unfolded[c] * ends_.periodic.unfolding[c][i - n];]]
               TESTS_OF unit_io
               MUST_FAIL FreePeriodic.PendulumsHaveTheirPeriods)
 
 # Bodies at rest count as a periodic motion.
 livens_mutant(NAME rest_is_periodic
               FILE spacetime/other_motions.cpp
-              OLD [[if (!ends.is_free_periodic) return false;]]
-              NEW [[if (ends.is_free_periodic || !ends.is_free_periodic) return false;]]
+              OLD [[if (!ends.periodic.is_free) return false;]]
+              NEW [[if (ends.periodic.is_free || !ends.periodic.is_free) return false;]]
               TESTS_OF unit_io
               MUST_FAIL FreePeriodic.BodiesAtRestAreNone)
 
