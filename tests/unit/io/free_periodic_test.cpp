@@ -155,8 +155,12 @@ std::string digits(double x)
 Solution solved(const std::string& text)
 {
     const ScenarioResult result = read(text);
-    if (!result.scenario) ADD_FAILURE() << shown(result);
-    if (!result.scenario) return {};
+    if (!result.scenario) {
+        ADD_FAILURE() << shown(result);
+        Solution none;
+        none.report.status = SolveStatus::not_converged;
+        return none;
+    }
     return solve_scenario(*result.scenario, result.scenario->options, std::make_shared<Prepared>()).solution;
 }
 
