@@ -79,7 +79,10 @@ UrdfJoints::UrdfJoints(const UrdfFile& file, const UrdfTree& tree, const UrdfOpt
         const int body = tree.links[i].body;
         if (file.links[i].name == "world" || (body >= 0 && tree.frames[body] == static_cast<int>(i)))
             continue;
-        point_names_[i] = unused(file.links[i].name);
+        // joints keep their names: a link that only rides on another is asked for less
+        std::string& name = point_names_[i] = file.links[i].name;
+        const auto is_joint = [&](const auto& joint) { return joint.name == name; };
+        while (std::ranges::any_of(file.joints, is_joint) || !taken_.insert(name).second) name += " link";
     }
 }
 
