@@ -88,6 +88,44 @@ SmoothFunction multiple(double factor)
             }};
 }
 
+constexpr std::size_t rotation_forms = 4;   // no other coordinate is of as many
+constexpr const char* rotation_ends = "the rotation vector of a ball joint gets to 175 degrees, where it ends";
+
+double angle_left_of_rotation(const Point& q)
+{
+    return widest_rotation - coordinate_at(CoordinateKind::rotation_angle, q).value;
+}
+
+/// Whether the shortest turn from one place to the next leads over half a turn, where a rotation vector begins
+/// again on the other side. Forms are s and c in any order of the first three.
+bool leads_over_half_a_turn(const Point& from, const Point& to)
+{
+    return from[3] < 0 && to[3] < 0 && from[0] * to[0] + from[1] * to[1] + from[2] * to[2] < 0;
+}
+
+/// A component of a rotation vector, times a number; no number where nobody knows it.
+SmoothFunction multiple_of_rotation(double factor)
+{
+    constexpr CoordinateKind kind = CoordinateKind::rotation_component;
+    const auto at = [factor](const Point& q) {
+        Value value = times(factor, coordinate_at(kind, q));
+        if (!is_known(kind, q)) value.value = std::numeric_limits<double>::quiet_NaN();
+        return value;
+    };
+    return {at,
+            [at](const Point& from, std::span<const Point> steps, std::span<Value> out) {
+                const double before = at(from).value;
+                for (std::size_t i = 0; i < steps.size(); ++i) {
+                    Point to = from;
+                    for (std::size_t k = 0; k < to.size(); ++k) to[k] += steps[i][k];
+                    out[i] = at(to);
+                    out[i].value = leads_over_half_a_turn(from, to) ? std::numeric_limits<double>::quiet_NaN()
+                                                                    : out[i].value - before;
+                }
+            },
+            rotation_forms};
+}
+
 /// What does not count turns, times a number.
 SmoothFunction multiple_of_function(CoordinateKind kind, std::size_t n, double factor)
 {
@@ -109,6 +147,7 @@ SmoothFunction multiple_of(const JointCoordinate& q, double factor)
 {
     if (q.counts_turns()) return multiple_of_angle(factor);
     if (!q.is_angle()) return multiple(factor);
+    if (q.kind == CoordinateKind::rotation_component) return multiple_of_rotation(factor);
     return multiple_of_function(q.kind, q.forms.size(), factor);
 }
 
@@ -205,6 +244,17 @@ void add_law(ConstraintRow& row, const CoupledLaw& of, std::vector<double>& angl
         row.guard = {{of.law.knots, of.law.period}, [law](const Point& q) { return law.of_forms(q); }};
 }
 
+/// Where rotation vectors end, beside what the first function has.
+void add_ends_of_rotations(ConstraintRow& row)
+{
+    constexpr double never = std::numeric_limits<double>::infinity();
+    for (std::size_t m = 0; m < row.functions.size(); ++m) {
+        if (row.functions[m].n != rotation_forms) continue;
+        while (row.edges.size() < m) row.edges.push_back({[](const Point&) { return never; }, 1, ""});
+        row.edges.push_back({angle_left_of_rotation, 1, rotation_ends});
+    }
+}
+
 }   // namespace
 
 ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& terms, double constant, double scale,
@@ -221,6 +271,7 @@ ConstraintRow coupling_row(const std::vector<CoupledCoordinate>& terms, double c
         row.functions.push_back(multiple_of(coordinate, factor));
     }
     if (terms.empty()) refuse_row("joint-row", "a row couples at least one coordinate", "", "", "", "");
+    add_ends_of_rotations(row);
     // After a whole turn of every angle the bodies stand as before; all the multiples of this period are one
     // position. It exists only for ratios of whole numbers: each angle is known up to whole turns.
     const double measure = common_measure(angles);

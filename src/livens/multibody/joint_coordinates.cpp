@@ -204,7 +204,6 @@ SmoothFunction::Value coordinate_at(CoordinateKind kind, const Point& q)
 bool is_known(CoordinateKind kind, const Point& q)
 {
     constexpr double least_square = 1e-4;   // of a cosine: 0.6 degrees
-    constexpr double least_angle = 3.05;    // of half a turn all but 5 degrees
     switch (kind) {
     case CoordinateKind::displacement:
     case CoordinateKind::angle:
@@ -217,7 +216,7 @@ bool is_known(CoordinateKind kind, const Point& q)
     case CoordinateKind::rotation_angle:
         break;
     }
-    return rotation_angle_at(q).value <= least_angle;
+    return rotation_angle_at(q).value <= widest_rotation;
 }
 
 bool is_known(const JointCoordinate& q, const Configurations& X) { return is_known(q.kind, point_of(q, X)); }

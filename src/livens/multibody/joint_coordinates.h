@@ -87,6 +87,8 @@ JointCoordinate rotation_angle(int first, int second, const TriadPair& triads);
 
 /// A coordinate as a function of its forms.
 SmoothFunction::Value coordinate_at(CoordinateKind kind, const SmoothFunction::Point& forms);
+/// Up to which a rotation vector is known, rad: 175 degrees.
+inline constexpr double widest_rotation = 3.05;
 /// Whether the forms tell it: no angle is near where it is not unique, by 0.6 degrees of a quarter turn, or
 /// by 5 degrees of half a turn.
 bool is_known(CoordinateKind kind, const SmoothFunction::Point& forms);

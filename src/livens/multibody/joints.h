@@ -42,7 +42,8 @@ struct Joint : JointLine {
     /// Functions that must be positive at assembly, where rows alone would admit another branch.
     std::vector<ConstraintRow> branches{};
     std::vector<NamedCoordinate> coordinates{};
-    /// What is only read of it, beside its coordinates: the rotation vector of a ball joint.
+    /// Beside its coordinates, of a ball joint: the components of its rotation vector, which what is asked for
+    /// them takes as coordinates, and its length, which is only read.
     std::vector<NamedCoordinate> readings{};
     /// Of a ball joint with readings, in coordinates of `first` and `second`.
     TriadPair triads{};
@@ -51,6 +52,11 @@ struct Joint : JointLine {
     double until = std::numeric_limits<double>::infinity();
 
     bool acts_at(double t) const { return from <= t && t < until; }
+    /// One of its coordinates, or behind them of its readings.
+    const NamedCoordinate& coordinate(std::size_t k) const
+    {
+        return k < coordinates.size() ? coordinates[k] : readings[k - coordinates.size()];
+    }
 };
 
 /// Where a joint sits, in coordinates of each body. For the world they are world coordinates.
@@ -142,7 +148,7 @@ Joint rod(const std::string& name, const std::vector<BodyPoint>& over, double le
 Joint slot(const std::string& name, int first, int second, const Curve& curve, const Vector3& point_second,
            const Matrix34& X_first, const Matrix34& X_second, double scale = 1);
 
-/// The coordinate of that name, or null.
+/// The coordinate of that name, or null; of a ball joint also a component of its rotation vector.
 const NamedCoordinate* find_coordinate(const Joint& joint, std::string_view name);
 
 // Joints between the coordinates of others, a sum of which stays as it is in the configuration X of all

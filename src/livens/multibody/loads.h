@@ -183,6 +183,8 @@ struct Load : LoadSmoothness, LoadEnergy, LoadLine {
     std::string domain;   ///< where F is a number, for the message if it is not; empty: everywhere
     /// Angles that F counts with their turns, zero where the bodies are stated; see LoadArguments::angles.
     std::vector<JointCoordinate> angles{};
+    /// Components of rotation vectors that F acts along or is of: a motion beyond their range is suspect.
+    std::vector<JointCoordinate> rotations{};
 
     LoadFunction forces;   ///< F; required
     /// dF/dX and dF/dV; required if one of the flags is set. The tangent arrives as zero.

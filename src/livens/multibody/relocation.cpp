@@ -220,7 +220,8 @@ Load relocated(Load load, const Relocation& to)
     if (!to.by.is_none()) displace(load, to.by);
     for (int& body : load.bodies) body = to.body(body);
     relocate(load.over, to);
-    for (JointCoordinate& angle : load.angles) relocate(angle, to);
+    for (auto* all : {&load.angles, &load.rotations})
+        for (JointCoordinate& one : *all) relocate(one, to);
     return load;
 }
 

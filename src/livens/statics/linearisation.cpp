@@ -173,7 +173,7 @@ Values row_of(const Model& model, const Linearisation& linear, const std::string
         const auto row = linear.twists.begin() + linear.n * (6 * body + static_cast<int>(axes.find(what)));
         return {row, row + linear.n};
     }
-    if (!what.starts_with("angle") && what != "displacement")
+    if (!what.starts_with("angle") && !what.starts_with("rotation_vector") && what != "displacement")
         refuse_port(name, "is no quantity of a joint or a body");
     const int joint = model.find_joint(whose);
     if (joint < 0) refuse_port(name, "names no joint");

@@ -222,6 +222,68 @@ TEST(RotorInertia, OfALoopMovesItAsBodiesBoundByRacksDo)
                     1e-7);
 }
 
+/// A ball or a universal joint with rotors along its angles, or the hinges that its angles are: of crosses with
+/// next to no mass between.
+std::string about_axes(const std::vector<std::string>& axes, const std::vector<double>& rotors,
+                       const std::string& joint_keys)
+{
+    std::string text = "gravity = [1, 2, -9.81]\n" +
+                       body("top", "[0.3, 0.2, -0.4]", "[0.3, 0.4, 0.5]", "angular_velocity = [0.7, 0.4, -0.3]");
+    if (!joint_keys.empty()) {
+        text += "[[joint]]\nname = \"ball\"\nbetween = [\"world\", \"top\"]\nat = [0, 0, 0]\n" + joint_keys;
+        for (std::size_t k = 0; k < rotors.size(); ++k)
+            text += "\nangle_" + std::to_string(k + 1) + " = { rotor_inertia = " + number(rotors[k]) + " }";
+        return text;
+    }
+    std::string before = "world";
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+        const std::string after = k + 1 < axes.size() ? "cross " + std::to_string(k) : "top";
+        if (after != "top")
+            text += "[[body]]\nname = \"" + after +
+                    "\"\nmass = 1e-9\ninertia = [1e-10, 1e-10, 1e-10]\nposition = [0, 0, 0]\n";
+        text += joint("revolute", "h" + std::to_string(k), "[\"" + before + "\", \"" + after + "\"]",
+                      "[0, 0, 0]", axes[k], rotor(rotors[k]));
+        before = after;
+    }
+    return text + "\n[start]\ninitial = \"project\"\n";
+}
+
+TEST(RotorInertia, OfUniversalAndBallJointsIsThatOfTheirHinges)
+{
+    const std::string x = "[1, 0, 0]", y = "[0, 1, 0]", z = "[0, 0, 1]",
+                      time = in_time(1.2, 60, "family = \"lobatto\"\ndegree = 5");
+    const struct {
+        std::vector<std::string> axes;
+        std::vector<double> rotors;
+        std::string keys;
+    } cases[] = {{{x, y}, {0.4, 0.25}, "type = \"universal\"\naxes = [[1, 0, 0], [0, 1, 0]]\n"},
+                 {{x, y, z}, {0.4, 0.25, 0.6}, "type = \"spherical\"\nangles = \"xyz\"\n"},
+                 {{z, y, x}, {0.4, 0.25, 0.6}, "type = \"spherical\"\nangles = \"zyx\"\n"}};
+    for (const auto& [axes, rotors, keys] : cases) {
+        SCOPED_TRACE(keys);
+        const std::string start = "\n[start]\ninitial = \"project\"\n";
+        const Solved one = solved(about_axes(axes, rotors, keys) + start + time),
+                     hinges = solved(about_axes(axes, rotors, "") + time),
+                     bare = solved(about_axes(axes, {}, keys) + start + time);
+        const State a = one.solution.motion.at(1.2), b = hinges.solution.motion.at(1.2),
+                    c = bare.solution.motion.at(1.2);
+        EXPECT_LT(std::max(norm(a.X[0] - b.X[0]), norm(a.V[0] - b.V[0])), 1e-7);
+        EXPECT_GT(norm(a.X[0] - c.X[0]), 1e-2) << "negative control";
+        EXPECT_TRUE(one.solution.verdict.reasons.empty()) << one.solution.verdict.reasons.front();
+        const Balance of = balance(one.scenario.model, one.solution.motion);
+        EXPECT_LT(of.relative_energy_drift(), 1e-10);
+        EXPECT_LT(of.relative_angular_momentum_drift(), 1e-10);
+        const GeneralisedCoordinates with(one.scenario.model, one.scenario.model.start(), StartPolicy::project),
+            without(bare.scenario.model, bare.scenario.model.start(), StartPolicy::project);
+        const std::size_t n = axes.size();
+        std::vector<double> q(n, 0.4), v(n, 0.7);
+        const std::vector<double> M = with.at(q, v).mass_matrix(), M0 = without.at(q, v).mass_matrix();
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t j = 0; j < n; ++j)
+                EXPECT_NEAR(M[n * i + j] - M0[n * i + j], i == j ? rotors[i] : 0, 1e-13);
+    }
+}
+
 TEST(RotorInertia, KeepsEnergyAndBalances)
 {
     const Solved s =
@@ -368,6 +430,8 @@ TEST(RotorInertia, ThatCannotBeIsRefused)
     wrong("rotor_inertia = inf", "not-finite");
     wrong("rotor_inertia = \"1 kg\"", "unit");
     wrong("rotor_inertia = 1", "misplaced-key", "spherical");
+    wrong("angle_1 = { rotor_inertia = 1 }", "joint-loads", "spherical");   // which has no 'angles'
+    wrong("angles = \"xyz\"\nangle_2 = { rotor_inertia = -1 }", "out-of-range", "spherical");
     wrong("rotor_inertia = 1", "misplaced-key", "cylindrical");
     wrong("rotor_inertia = 1\nuntil = 0.5", "rotor-inertia");
     wrong("rotor_inertia = 1", "rotor-method", "revolute",

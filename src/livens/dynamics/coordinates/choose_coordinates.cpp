@@ -25,7 +25,8 @@ struct Candidate {
     bool is_taken = false;
 };
 
-std::vector<Candidate> candidates_of(const Model& model)
+/// Those of rotation vectors only where they are wanted: they end at half a turn.
+std::vector<Candidate> candidates_of(const Model& model, const std::vector<std::string>& wanted)
 {
     std::vector<Candidate> all;
     int rows = 0;
@@ -40,9 +41,15 @@ std::vector<Candidate> candidates_of(const Model& model)
     }
     for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
         const Joint& joint = model.joints()[j];
-        for (int k = 0; k < static_cast<int>(joint.coordinates.size()); ++k) {
-            add(Of::joint, j, k, joint.name + "." + joint.coordinates[k].name);
-            all.back().is_numbered = joint.coordinates[k].is_numbered();
+        const std::size_t n_own = joint.coordinates.size();
+        for (std::size_t k = 0; k < n_own + joint.readings.size(); ++k) {
+            const NamedCoordinate& one = joint.coordinate(k);
+            const std::string name = joint.name + "." + one.name;
+            if (k >= n_own && (find_coordinate(joint, one.name) == nullptr ||
+                               std::ranges::find(wanted, name) == wanted.end()))
+                continue;
+            add(Of::joint, j, static_cast<int>(k), name);
+            all.back().is_numbered = one.is_numbered();
         }
     }
     return all;
@@ -57,7 +64,7 @@ Model with_rows_of(const Model& model, const std::vector<Candidate>& candidates,
         const std::string name = "\n" + c.name;   // apart from the names of joints
         if (c.of == Of::joint) {
             const Joint& joint = model.joints()[c.part];
-            const NamedCoordinate& counted = joint.coordinates[c.index];
+            const NamedCoordinate& counted = joint.coordinate(static_cast<std::size_t>(c.index));
             with.add_joint(driven_coordinate(name, joint, counted, ramp(counted.at_stated, 0, 0), X));
             continue;
         }
@@ -79,8 +86,9 @@ Model with_rows_of(const Model& model, const std::vector<Candidate>& candidates,
 /// What is free, and who takes it.
 class Choice {
 public:
-    Choice(const Model& model, const State& placed, const std::vector<int>& independent)
-        : all_(candidates_of(model)), n_left_(-static_cast<int>(independent.size()))
+    Choice(const Model& model, const State& placed, const std::vector<int>& independent,
+           const std::vector<std::string>& wanted)
+        : all_(candidates_of(model, wanted)), n_left_(-static_cast<int>(independent.size()))
     {
         for (const Body& body : model.bodies()) n_left_ += body.is_point ? 3 : 6;
         const Model with = with_rows_of(model, all_, placed.X);
@@ -139,8 +147,9 @@ void take_wanted(Choice& choice, const std::vector<std::string>& wanted)
         const std::string path = "q[" + name + "]";
         if (found == nullptr)
             throw InputError({"coordinate-unknown", path, "there is no coordinate '" + name + "'", "", "", "",
-                              "coordinates are those of joints, as 'elbow.angle', and those of bodies, as "
-                              "'base.x' and 'base.quaternion'"});
+                              "coordinates are those of joints, as 'elbow.angle' or, of a ball, "
+                              "'hip.rotation_vector_x', and those of bodies, as 'base.x' and "
+                              "'base.quaternion'"});
         if (found->is_taken)
             throw InputError({"coordinate-twice", path, "coordinate '" + name + "' is given twice", "", "",
                               "", "give it once"});
@@ -191,7 +200,7 @@ void take_of_bodies(Choice& choice, const Model& model)
              (bodies.empty() ? "" : ", which turn bodies " + bodies),
          "", "",
          "joints such as constant_velocity and perpendicular_axes leave turns free that are no coordinates",
-         "give a spherical joint 'angles', or place the body's reference point away from the joint"});
+         "give a spherical joint 'angles', or take its rotation vector; or place the body's reference point away from the joint"});
 }
 
 }   // namespace
@@ -200,7 +209,7 @@ std::vector<GeneralisedCoordinate> choose_coordinates(const Model& model, const 
                                                       const std::vector<int>& independent,
                                                       const std::vector<std::string>& wanted)
 {
-    Choice choice(model, placed, independent);
+    Choice choice(model, placed, independent, wanted);
     take_wanted(choice, wanted);
     for (const bool is_numbered : {false, true})
         for (Candidate& c : choice.all())

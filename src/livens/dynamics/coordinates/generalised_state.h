@@ -25,7 +25,7 @@ struct GeneralisedCoordinate {
     enum class Of { joint, place, turn };
     Of of = Of::joint;
     int part = 0;       ///< joint or body, in the model that was given
-    int index = 0;      ///< which coordinate of the joint, or which axis
+    int index = 0;      ///< Joint::coordinate() of the joint, or which axis
     std::string name;   ///< "elbow.angle", "base.x", "base.quaternion"
 
     /// A turn is told by four numbers (w, x, y, z) and moves by three, its angular velocity in world axes.
@@ -39,7 +39,7 @@ class GeneralisedState;
 /// where these are placed.
 ///
 /// Drives are released: whoever states the coordinates drives them. Joints that do not act at the instant are
-/// left out. Chosen are the wanted ones; then coordinates of joints, in the order of the model, numbered ones
+/// left out. Chosen are the wanted ones, which may be components of the rotation vector of a ball joint; then coordinates of joints, in the order of the model, numbered ones
 /// (angle_1) last; then what these leave free, by positions and orientations of bodies: of a free body all
 /// six. In the list bodies stand before joints.
 ///

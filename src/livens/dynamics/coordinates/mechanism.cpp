@@ -37,8 +37,15 @@ CountedRow counted_row(const NamedCoordinate& named, const Configuration& stated
     CountedRow counted;
     counted.row = coupling_row({{1, named.coordinate}}, 0, 1, named.name);
     counted.is_angle = named.coordinate.is_angle();
+    counted.is_of_rotation = named.coordinate.kind == CoordinateKind::rotation_component;
+    counted.counts_turns = named.coordinate.counts_turns();
     counted.offset = named.at_stated - constraint_value(counted.row, stated);
     return counted;
+}
+
+const NamedCoordinate& coordinate_of(const Model& model, const GeneralisedCoordinate& c)
+{
+    return model.joints()[static_cast<std::size_t>(c.part)].coordinate(static_cast<std::size_t>(c.index));
 }
 
 Matrix3 directors_of(std::span<const double> q)
@@ -68,13 +75,13 @@ Mechanism::Mechanism(const Model& the_model, const State& at, StartPolicy policy
     coordinates = choose_coordinates(model, placed, closed.independent, wanted);
     for (const GeneralisedCoordinate& c : coordinates) {
         rows.emplace_back();
-        if (c.of == Of::joint) rows.back() = counted_row(model.joints()[c.part].coordinates[c.index], stated);
+        if (c.of == Of::joint) rows.back() = counted_row(coordinate_of(model, c), stated);
         n_rates += c.n_rates();
     }
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
         const GeneralisedCoordinate& c = coordinates[i];
         if (c.of == Of::joint) {
-            const NamedCoordinate& named = model.joints()[c.part].coordinates[c.index];
+            const NamedCoordinate& named = coordinate_of(model, c);
             numbers.push_back(named.at_stated + coordinate_change(named.coordinate, stated, placed.X));
         } else if (c.of == Of::place) {
             numbers.push_back(placed.X[c.part](c.index, 0));
@@ -93,7 +100,7 @@ std::vector<double> Mechanism::way_to(const Configuration& X, std::span<const do
         const GeneralisedCoordinate& c = coordinates[i];
         if (c.of == Of::joint) {
             const double left = *to - rows[i].offset - constraint_value(rows[i].row, X);
-            all.push_back(rows[i].is_angle ? std::remainder(left, 2 * std::numbers::pi) : left);
+            all.push_back(rows[i].counts_turns ? std::remainder(left, 2 * std::numbers::pi) : left);
         } else if (c.of == Of::place) {
             all.push_back(*to - X[c.part](c.index, 0));
         } else {

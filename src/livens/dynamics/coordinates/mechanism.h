@@ -22,7 +22,8 @@ using Configuration = std::vector<Matrix34>;
 struct CountedRow {
     ConstraintRow row;
     double offset = 0;
-    bool is_angle = false;
+    bool is_angle = false, counts_turns = false;
+    bool is_of_rotation = false;   ///< a component of a rotation vector
 };
 
 /// Constant once it is made.

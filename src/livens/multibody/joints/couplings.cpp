@@ -17,8 +17,10 @@ namespace livens {
 
 const NamedCoordinate* find_coordinate(const Joint& joint, std::string_view name)
 {
-    const auto found = std::ranges::find(joint.coordinates, name, &NamedCoordinate::name);
-    return found == joint.coordinates.end() ? nullptr : &*found;
+    for (const auto* all : {&joint.coordinates, &joint.readings})
+        for (const NamedCoordinate& one : *all)
+            if (one.name == name && one.coordinate.kind != CoordinateKind::rotation_angle) return &one;
+    return nullptr;
 }
 
 namespace {
@@ -39,8 +41,9 @@ const NamedCoordinate& coordinate_of(const std::string& path, const CoupledJoint
                  "joint '" + joint.name + "' (" + joint.type + ") has no " + term.coordinate, "",
                  has.empty() ? "it has no coordinate" : "it has: " + has,
                  "revolute, cylindrical, screw, planar and parallel_axes joints have an angle; universal "
-                 "joints angle_1 and angle_2, spherical ones with 'angles' angle_3 as well; prismatic, "
-                 "cylindrical, screw and point_on_line joints a displacement");
+                 "joints angle_1 and angle_2, spherical ones with 'angles' angle_3 as well; spherical ones of "
+                 "bodies rotation_vector_x, _y and _z; prismatic, cylindrical, screw and point_on_line "
+                 "joints a displacement");
 }
 
 /// The reaction is that on the second body of the last joint. The other one is the first of those that move

@@ -33,6 +33,28 @@ TimeFunction sine_of(const TimeFunction& angle)
 
 }   // namespace
 
+namespace {
+
+QuadraticForm less_one()
+{
+    QuadraticForm one;
+    one.c = -1;
+    return one;
+}
+
+/// r_k(q) - law = 0, up to 175 degrees; the law counts from where the bodies stand.
+ConstraintRow driven_rotation(const std::string& name, const Joint& joint, const NamedCoordinate& component,
+                              const TimeFunction& law)
+{
+    ConstraintRow row = coupling_row({{1, component.coordinate}}, 0, 1, "driven " + component.name);
+    row.drives = {{law, less_one()}};
+    row.edges.front().what = "drive '" + name + "' and what else turns '" + joint.name +
+                             "' bring its rotation vector to 175 degrees, where it ends,";
+    return row;
+}
+
+}   // namespace
+
 /// An angle q = atan2(s, c) follows f by cos(f) s - sin(f) c = 0, which also admits half a turn more; one
 /// that is an arc sine by its sine.
 Joint driven_coordinate(const std::string& name, const Joint& joint, const NamedCoordinate& coordinate,
@@ -53,10 +75,12 @@ Joint driven_coordinate(const std::string& name, const Joint& joint, const Named
     const double now = coordinate_value(coordinate.coordinate, X);
     if (coordinate.coordinate.kind == CoordinateKind::arc_sine) {
         static_cast<PairForm&>(row) = forms[0];
-        QuadraticForm one;
-        one.c = -1;
-        row.drives.push_back({sine_of(shifted(law, now - coordinate.at_stated)), one});
+        row.drives.push_back({sine_of(shifted(law, now - coordinate.at_stated)), less_one()});
         driven.rows = {row};
+        return driven;
+    }
+    if (coordinate.coordinate.kind == CoordinateKind::rotation_component) {
+        driven.rows = {driven_rotation(name, joint, coordinate, shifted(law, now - coordinate.at_stated))};
         return driven;
     }
     if (!coordinate.coordinate.is_angle()) {
@@ -64,9 +88,7 @@ Joint driven_coordinate(const std::string& name, const Joint& joint, const Named
         // stand.
         const TimeFunction raw = shifted(law, now - coordinate.at_stated);
         static_cast<PairForm&>(row) = forms[0];
-        QuadraticForm one;
-        one.c = -1;
-        row.drives.push_back({raw, one});
+        row.drives.push_back({raw, less_one()});
         driven.rows = {row};
         return driven;
     }

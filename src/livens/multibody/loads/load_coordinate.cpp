@@ -45,7 +45,7 @@ JointCoordinate from(const JointCoordinate& coordinate, const Configurations& X)
 
 /// Positions do not tell whole turns: where nobody counts them, an angle nearer than this to half a turn is
 /// not a number.
-constexpr double widest_angle = 3.05;
+constexpr double widest_angle = widest_rotation;
 
 /// Whether the gradient of a form by X of its body j, or i, has more than a first column.
 bool turns(const PairForm& form, bool by_j)
@@ -82,6 +82,7 @@ void LoadCoordinate::place(Load& load, bool counts_turns)
         angle_ = static_cast<int>(load.angles.size());
         load.angles.push_back(coordinate_);
     }
+    if (coordinate_.kind == CoordinateKind::rotation_component) load.rotations.push_back(coordinate_);
     for (std::size_t b = 0; b < n_; ++b)
         places_[b] = static_cast<int>(std::ranges::find(load_bodies, bodies_[b]) - load_bodies.begin());
     placed_ = coordinate_;

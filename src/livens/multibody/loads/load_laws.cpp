@@ -214,6 +214,7 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
     std::ranges::sort(load.breaks);
     load.domain = parts.domain;
     for (const Load& unit : parts.units) {
+        load.rotations.insert(load.rotations.end(), unit.rotations.begin(), unit.rotations.end());
         load.depends_on_X = load.depends_on_X || unit.depends_on_X;
         for (std::size_t b = 0; b < 2; ++b)
             load.needs_directors[b] = load.needs_directors[b] || unit.needs_directors[b];

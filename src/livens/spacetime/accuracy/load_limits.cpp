@@ -75,6 +75,8 @@ std::vector<WatchedAngle> watched_angles(const Model& model)
     for (const Joint& joint : model.joints())
         for (const NamedCoordinate& one : joint.coordinates)
             add("joint '" + joint.name + "'", one.coordinate);
+    for (const Load& load : model.loads())
+        for (const JointCoordinate& q : load.rotations) add("load '" + load.name + "'", q);
     for (const Sensor& sensor : model.sensors())
         for (const SensorComponent& component : sensor.components)
             if (component.derivative == 0)

@@ -8,20 +8,28 @@
 
 namespace livens::inline io_internal {
 
-void check_quarter_turn(const JointReference& of, const TimeFunction& law,
+void check_driven_angle(const JointReference& of, const TimeFunction& law,
                         const std::array<double, 2>& during, const std::string& path)
 {
-    if (of.coordinate->coordinate.kind != CoordinateKind::arc_sine) return;
+    const CoordinateKind kind = of.coordinate->coordinate.kind;
+    const bool is_of_rotation = kind == CoordinateKind::rotation_component;
+    if (kind != CoordinateKind::arc_sine && !is_of_rotation) return;
+    const double most = is_of_rotation ? widest_rotation : 0.5 * std::numbers::pi;
     constexpr int n_looks = 1000;   // what passes between them is no number, see driven_coordinate()
     for (int i = 0; i <= n_looks; ++i) {
         const double t = during[0] + (during[1] - during[0]) * i / n_looks, q = law({t}).value;
-        if (std::abs(q) < 0.5 * std::numbers::pi) continue;
-        throw InputError(
-            {"drive-angle", path,
-             "'" + of.joint->name + "." + of.coordinate->name + "' is driven to a quarter turn or beyond",
-             to_text(q) + " rad at t = " + to_text(t, 6) + " s", "less than 90 degrees either way",
-             "there the other two angles of the joint are one",
-             "choose other 'angles' of the joint, so that this axis comes first or last"});
+        if (std::abs(q) < most) continue;
+        const std::string name = "'" + of.joint->name + "." + of.coordinate->name + "'",
+                          value = to_text(q) + " rad at t = " + to_text(t, 6) + " s";
+        if (is_of_rotation)
+            throw InputError({"drive-angle", path, name + " is driven to 175 degrees or beyond", value,
+                              "less than 175 degrees either way",
+                              "at half a turn a rotation vector begins again on the other side",
+                              "drive an angle instead: 'angles' of the joint, or a joint with one axis"});
+        throw InputError({"drive-angle", path, name + " is driven to a quarter turn or beyond", value,
+                          "less than 90 degrees either way",
+                          "there the other two angles of the joint are one",
+                          "choose other 'angles' of the joint, so that this axis comes first or last"});
     }
 }
 

@@ -228,7 +228,7 @@ Joint make_on_joint(Builder& builder, const Section& drive, const std::string& n
     const JointReference of = find_coordinate(builder, drive, "drive[" + name + "]");
     check_units(drive, of.coordinate->coordinate.is_angle(), "drive[" + name + "]");
     const TimeFunction law = read_law(drive, 0, 1, of.coordinate->at_stated, during);
-    check_quarter_turn(of, law, {during.begins, during.ends}, "drive[" + name + "]");
+    check_driven_angle(of, law, {during.begins, during.ends}, "drive[" + name + "]");
     warn_of_turns(builder, drive, name, *of.coordinate, law, during);
     return driven_coordinate(name, *of.joint, *of.coordinate, law, X);
 }

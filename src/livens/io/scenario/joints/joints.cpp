@@ -262,11 +262,13 @@ Key coordinate_key()
 {
     return {"coordinate",
             types::choice,
-            "Which coordinate of the joint. Needed only if the joint has several.",
+            "Which coordinate of the joint. Needed only if the joint has several, or if it is a component of "
+            "the rotation vector of a spherical joint, from its first frame to its second, up to 175 degrees.",
             "",
             "",
             false,
-            {"angle", "displacement", "angle_1", "angle_2", "angle_3"}};
+            {"angle", "displacement", "angle_1", "angle_2", "angle_3", "rotation_vector_x",
+             "rotation_vector_y", "rotation_vector_z"}};
 }
 
 JointReference find_coordinate(const Builder& builder, const Section& section, const std::string& path)
@@ -294,9 +296,9 @@ JointReference find_coordinate(const Builder& builder, const Section& section, c
                  (is_said ? section.text("coordinate") : "coordinate"),
              "", "", "",
              "revolute, cylindrical, planar, screw and parallel_axes joints have an angle; universal joints "
-             "angle_1 and angle_2, spherical ones with 'angles' angle_3 as well; prismatic, cylindrical, "
-             "screw "
-             "and point_on_line joints a displacement"});
+             "angle_1 and angle_2, spherical ones with 'angles' angle_3 as well; spherical ones of bodies "
+             "rotation_vector_x, _y and _z; prismatic, cylindrical, screw and point_on_line joints a "
+             "displacement"});
     return {joint, of};
 }
 

@@ -25,9 +25,10 @@ struct JointReference {
     const Joint* joint;
     const NamedCoordinate* coordinate;
 };
-/// Of three angles of a ball joint the second is driven no farther than a quarter turn while it is (from,
-/// until). Throws InputError (`drive-angle`).
-void check_quarter_turn(const JointReference& of, const TimeFunction& law,
+/// Of a ball joint, while it is driven (from, until): the second of three angles goes no farther than a
+/// quarter turn, a component of the rotation vector no farther than 175 degrees. Throws InputError
+/// (`drive-angle`).
+void check_driven_angle(const JointReference& of, const TimeFunction& law,
                         const std::array<double, 2>& during, const std::string& path);
 /// Throws InputError (`joint-unknown`, `joint-coordinate`) at path.joint.
 JointReference find_coordinate(const Builder& builder, const Section& section, const std::string& path);

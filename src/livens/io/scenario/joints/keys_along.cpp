@@ -80,17 +80,14 @@ std::vector<Key> and_along_displacement(std::vector<Key> keys)
 
 Key table_along_angle(std::string_view word, const std::string& of)
 {
-    std::vector<Key> keys = keys_along_angle();
-    // one of several angles turns no rotor of its own
-    if (word != "angle") std::erase_if(keys, [](const Key& key) { return key.name == "rotor_inertia"; });
-    return Key{word, types::table, "Damping, spring and limits along " + of + "."}.holding(
-        {"angle of a joint", "Loads along the angle.", std::move(keys)});
+    return Key{word, types::table, "Damping, spring, rotor and limits along " + of + "."}.holding(
+        {"angle of a joint", "Loads along the angle.", keys_along_angle()});
 }
 std::vector<Key> and_along_both(std::vector<Key> keys)
 {
     keys.push_back(table_along_angle("angle", "the angle"));
     keys.push_back(
-        Key{"displacement", types::table, "Damping, spring and limits along the displacement."}.holding(
+        Key{"displacement", types::table, "Damping, spring, rotor and limits along the displacement."}.holding(
             {"displacement of a joint", "Loads along the displacement.", keys_along_displacement()}));
     return keys;
 }

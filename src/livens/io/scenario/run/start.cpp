@@ -31,6 +31,11 @@ StartCoordinate read_coordinate(const Builder& builder, const Section& section, 
 {
     // Joint and coordinate are kept as indices: the model is copied while bodies are led.
     const JointReference of = find_coordinate(builder, section, path);
+    if (of.coordinate->coordinate.kind == CoordinateKind::rotation_component)
+        throw InputError({"start-coordinate", path + ".coordinate",
+                          "a rotation vector is no coordinate that a joint is led along", "", "", "",
+                          "turn the body itself, by 'rotation_vector' of its [[body]], or give the joint "
+                          "'angles' and state these"});
     StartCoordinate wanted;
     wanted.path = path;
     wanted.joint = builder.model().find_joint(of.joint->name);
