@@ -35,7 +35,7 @@ export function build_about(host: HTMLElement, run: Run, program: string, notice
       element(
         "p",
         {},
-        `Velocities are the derivatives of these polynomials. Energies, reactions, coordinates of joints, forces of loads and sensors were taken by livens at the nodes of polynomials in each element, in single precision, and are evaluated between them.${curves}${quality} Reactions follow from the equations of motion, inside elements in the state of the polynomials, put onto the joints.`,
+        `Velocities are the derivatives of these polynomials. Energies, reactions, coordinates of joints, forces of loads and sensors were taken by livens at the nodes of polynomials in each element, rounded to a ten-millionth of what they reach, and are evaluated between them.${curves}${quality} Reactions follow from the equations of motion, inside elements in the state of the polynomials, put onto the joints.`,
       ),
       ...meta.bodies.flatMap(({ name, thinned }) =>
         thinned

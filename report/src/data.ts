@@ -91,7 +91,7 @@ export interface Meta {
   start: number;
   end: number;
   pose: {
-    precision: "double" | "single" | "thinned";
+    precision: "double" | "rounded" | "thinned";
     position_loss: number | null;
     orientation_loss: number | null;
     elements: number;
@@ -111,7 +111,7 @@ export interface Meta {
   curves: { every: boolean; loss?: number; nodes: number[] }; // loss: between nodes, of the range of a series
   channels: Channel[];
   quality: { bounds: Record<string, number>; worst_body: number; every: boolean; series: string[] };
-  arrays: Record<string, ["f8" | "f4" | "u4", number]>;
+  arrays: Record<string, ["f8" | "f4" | "u4" | "d1" | "d2", number]>;
 }
 
 export type Numbers = Float64Array | Float32Array | Uint32Array;
@@ -128,20 +128,42 @@ function unshuffled(bytes: Uint8Array, at: number, size: number, count: number):
   return plain.buffer;
 }
 
+/** Sums of differences along each channel, times its step: see Payload of src/livens/io/report. */
+function from_steps(
+  differences: Uint32Array,
+  lows: Float64Array,
+  steps: Float64Array,
+  order: number,
+): Float64Array {
+  const n = differences.length / (lows.length || 1),
+    whole = Int32Array.from(differences, (x) => (x >>> 1) ^ -(x & 1)),
+    numbers = new Float64Array(whole.length);
+  for (let channel = 0; channel < lows.length; ++channel) {
+    const one = whole.subarray(channel * n, (channel + 1) * n);
+    for (let round = 0; round < order; ++round) for (let i = 1; i < n; ++i) one[i] += one[i - 1];
+    for (let i = 0; i < n; ++i)
+      numbers[channel * n + i] = one[i] < 0 ? NaN : lows[channel] + one[i] * steps[channel];
+  }
+  return numbers;
+}
+
 export async function data_of(meta: Meta, base64: string): Promise<Data> {
   const bytes = await unpacked(base64),
     arrays = new Map<string, Numbers>();
   let at = 0;
   for (const [name, [kind, count]] of Object.entries(meta.arrays)) {
     const size = kind === "f8" ? 8 : 4,
-      plain = unshuffled(bytes, at, size, count);
+      plain = unshuffled(bytes, at, size, count),
+      of = (what: string) => arrays.get(`${name}_${what}`) as Float64Array;
     arrays.set(
       name,
       kind === "f8"
         ? new Float64Array(plain)
         : kind === "f4"
           ? new Float32Array(plain)
-          : new Uint32Array(plain),
+          : kind === "u4"
+            ? new Uint32Array(plain)
+            : from_steps(new Uint32Array(plain), of("low"), of("step"), kind === "d1" ? 1 : 2),
     );
     at += size * count;
   }

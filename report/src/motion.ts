@@ -64,8 +64,7 @@ export class Motion {
 
   constructor({ meta, arrays }: Data) {
     const pose = meta.pose,
-      stored = arrays.get("pose")!,
-      middles = arrays.get("pose_middle")!;
+      stored = arrays.get("pose")!;
     this.ends = arrays.get("pose_end") as Float64Array;
     this.weights = arrays.get("pose_weight") as Float64Array;
     this.bodies = meta.bodies.length;
@@ -78,7 +77,7 @@ export class Motion {
     pose.forms.forEach((form, body) => {
       for (let n = 0; n < nodes; ++n) {
         const o = 12 * (this.bodies * n + body),
-          read = (i: number) => stored[(channel + i) * nodes + n] + middles[channel + i];
+          read = (i: number) => stored[(channel + i) * nodes + n];
         const kept = form === 7 ? 3 : form;
         for (let i = 0; i < kept; ++i) this.X[o + i] = read(i);
         if (form === 7) rotate(this.X, o + 3, read(3), read(4), read(5), read(6));

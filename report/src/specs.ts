@@ -28,7 +28,7 @@ const most_series = 7; // which colours tell apart
 const looks = 240; // instants at which series are looked at
 const flattened = 10; // times the range of a line that stands beside another
 const most_groups = 3; // plots that one is split into
-const rounding = 2e-6; // of a value: curves are in single precision
+const rounding = 2e-6; // of a value: curves are rounded to a ten-millionth
 const no_signal = 1e-9; // of the largest value: rounding
 const xyz = ["x", "y", "z"];
 

@@ -29,7 +29,7 @@ export function exactness(run: Run): string {
   const off = `at most ${rough(position_loss)}\u00a0m and ${rough(orientation_loss)} in directors`;
   if (precision === "double")
     return `Poses are the polynomials of the result itself in double precision, at every instant; what is stored of them differs by ${off}.`;
-  if (precision === "single")
-    return `The run is large: poses are its polynomials in single precision, off by ${off}.`;
-  return `The run is very large: poses are thinned to fewer elements in single precision, off by ${off} where it was looked at, inside every element.`;
+  if (precision === "rounded")
+    return `The run is large: poses are its polynomials, rounded to a ten-millionth of their range, off by ${off}.`;
+  return `The run is very large: poses are thinned to fewer elements and rounded, off by ${off} where it was looked at, inside every element.`;
 }

@@ -79,6 +79,25 @@ const tests = {
     }
   },
 
+  async "poses of a large run are rounded to a ten-millionth"() {
+    const text = example("lagrange_top").replace(/\[(time|method)\][^[]*/g, ""),
+      time = '\n[time]\nend = 10\nelements = 3000\n[method]\nfamily = "lobatto"\ndegree = 6\n',
+      { run, page: file } = made("large", text + time),
+      page = await open(file);
+    assert.match(await page.textContent("#exactness"), /rounded to a ten-millionth/);
+    let worst = 0;
+    const times = Array.from({ length: 20 }, (_, k) => 10 * ((k * Math.SQRT2) % 1)),
+      theirs = sample(run, "--body", "top", ...times.flatMap((t) => ["--at", String(t)])).samples;
+    for (const [k, t] of times.entries()) {
+      const mine = await page.evaluate((at) => livensReport.poses(at), t);
+      [...theirs[k].position, ...theirs[k].directors_raw.flat()].forEach((x, i) => {
+        worst = Math.max(worst, Math.abs(x - mine[i]));
+      });
+    }
+    assert.ok(worst < 5e-7 && worst > 1e-12, `${worst}`);
+    await page.close();
+  },
+
   async "pixels change in time and repeat"() {
     const { page: file } = made("four_bar", example("four_bar")),
       page = await open(file);

@@ -102,7 +102,7 @@ const tests = {
     for (const figure of await page.locator("#plot-list figure").all())
       if (/joints/.test(await figure.locator("figcaption").textContent()))
         assert.doesNotMatch(await figure.locator(".keys").textContent(), /motor/);
-    // Of a rod that is turned evenly: torque against gravity, power by the rate; in single precision, and interpolated.
+    // Of a rod that is turned evenly: torque against gravity, power by the rate; rounded, and interpolated.
     const torque = await table(page, plot(page, "Torques of motors")),
       power = await table(page, plot(page, "Power of motors"));
     let worst = 0;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -88,11 +89,11 @@ protected:
 /// 241 nodes of 7 and 3 numbers.
 TEST_F(Report, PrecisionGoesByWhatPosesTake)
 {
-    constexpr double in_doubles = 241 * 10 * 8;
-    EXPECT_EQ(found(page(in_doubles), "pose\": {\"precision"), "double");
-    EXPECT_EQ(found(page(in_doubles - 1), "pose\": {\"precision"), "single");
-    EXPECT_EQ(found(page(in_doubles / 2), "pose\": {\"precision"), "single");
-    EXPECT_EQ(found(page(in_doubles / 2 - 1), "pose\": {\"precision"), "thinned");
+    constexpr double numbers = 241 * 10;   // of 10 bytes on the page, rounded of 2
+    EXPECT_EQ(found(page(10 * numbers), "pose\": {\"precision"), "double");
+    EXPECT_EQ(found(page(10 * numbers - 1), "pose\": {\"precision"), "rounded");
+    EXPECT_EQ(found(page(2 * numbers), "pose\": {\"precision"), "rounded");
+    EXPECT_EQ(found(page(2 * numbers - 1), "pose\": {\"precision"), "thinned");
 }
 
 /// What is lost is measured: the less room, the more.
@@ -109,12 +110,38 @@ TEST_F(Report, LossesAreStatedAndGrow)
     EXPECT_GT(loss(1000, "orientation"), loss(3000, "orientation"));
 }
 
+/// Numbers as whole multiples of a step come back to half a step; what is no number stays none.
+TEST(Stepped, NumbersComeBackToHalfAStep)
+{
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
+                     inf = std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::max();
+    const std::vector<double> values{7e6, 7e6 + 1,  7e6 + 0.3, 7e6 + 0.9, -2,   nan,  inf,  1,
+                                     5,   5 + 1e-12, 5,         5,         nan,  nan,  nan,  nan,
+                                     0,   0,         0,         0,         -most, most, 0,   0.5 * most};
+    const Stepped stepped(values, 6, 23), least(values, 6, 23, 1e-6);
+    const std::vector<double> back = stepped.values(), coarse = least.values();
+    ASSERT_EQ(back.size(), values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        EXPECT_EQ(std::isnan(back[i]), !std::isfinite(values[i])) << i;
+        if (!std::isfinite(values[i])) continue;
+        const double step = stepped.steps[i / 4];
+        EXPECT_LE(std::abs(0.5 * back[i] - 0.5 * values[i]), 0.26 * step + 1e-9 * std::abs(values[i])) << i;
+        EXPECT_LE(step, std::ldexp(2 * most, -23));
+    }
+    EXPECT_NEAR(stepped.steps[0], std::ldexp(1, -23), 1e-12);
+    EXPECT_EQ(coarse[9], coarse[8]) << "rounding of a constant is none of its range";
+    EXPECT_NE(back[9], back[8]);
+    Payload payload;
+    payload.add("x", stepped, 2);
+    EXPECT_EQ(payload.n_bytes(), 6 * 16 + 24 * 4);
+}
+
 /// Series have all instants that elements have; where they cannot, what that loses is told.
 TEST_F(Report, SeriesSayWhatTheyLose)
 {
     const auto loss = [&](double most_bytes) { return std::stod(found(page(most_bytes), "loss")); };
     EXPECT_EQ(loss(8e6), 0);
-    const double some = loss(4e4), much = loss(1000);
+    const double some = loss(2e4), much = loss(500);
     EXPECT_GT(some, 1e-8);
     EXPECT_LT(some, 0.1);
     EXPECT_GT(much, some);

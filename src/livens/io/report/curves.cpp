@@ -18,7 +18,10 @@ namespace livens::inline io_internal {
 
 namespace {
 
-constexpr double bytes_of_number = 8;   // of what poses may take: a series takes half as much as they do
+constexpr double bytes_of_number = 4;   // of what poses may take: a series takes half as much as they do
+// Of the range of a series, and of its largest number: a constant with its rounding stays a constant.
+constexpr int bits_of_number = 23;
+constexpr double least_step = 0x1p-25;
 constexpr double fewest_instants = 120;
 constexpr double no_signal = 1e-12;   // of the largest number of all: rounding
 constexpr double no_force = 1e-8;     // of what moves the whole model: what is left of forces that cancel
@@ -329,7 +332,7 @@ void write_curves(ReportData& data, const Scenario& scenario, const Run& run, do
                          (instants.is_whole && refine(curves, instants, columns, most_bytes));
     std::vector<double> all;
     for (const std::vector<double>& column : columns) all.insert(all.end(), column.begin(), column.end());
-    data.payload.add("curve", Precision::single, all);
+    data.payload.add("curve", Stepped(all, columns.size(), bits_of_number, least_step), 1);
     data.payload.add("curve_end", Precision::full, instants.ends);
     JsonWriter& json = data.json;
     json.key("curves").begin_object();

@@ -3,7 +3,10 @@
 // neighbours of a series share their leading bytes and compress far better so.
 #include "livens/io/report/payload.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <new>
 
 #include <zlib.h>
@@ -13,8 +16,8 @@ namespace livens::inline io_internal {
 namespace {
 
 /// Byte k of all numbers, then byte k + 1.
-template <class Bits, class Convert>
-void append_shuffled(std::string& out, std::span<const double> values, Convert convert)
+template <class Bits, class Value, class Convert>
+void append_shuffled(std::string& out, std::span<const Value> values, Convert convert)
 {
     const std::size_t n = values.size(), start = out.size();
     out.resize(start + n * sizeof(Bits));
@@ -25,11 +28,56 @@ void append_shuffled(std::string& out, std::span<const double> values, Convert c
     }
 }
 
+/// Differences of neighbours in place, order after order; the first is one to zero. Modulo 2^32.
+void difference(std::span<std::uint32_t> numbers, int order)
+{
+    for (int round = 0; round < order; ++round)
+        for (std::size_t i = numbers.size(); i-- > 1;) numbers[i] -= numbers[i - 1];
+}
+
+const char* kind_of(Precision precision)
+{
+    return precision == Precision::full ? "f8" : precision == Precision::single ? "f4" : "u4";
+}
+
 }   // namespace
+
+Stepped::Stepped(std::span<const double> values, std::size_t n_channels, int bits, double least)
+{
+    const std::size_t n = n_channels == 0 ? 0 : values.size() / n_channels;
+    for (std::size_t c = 0; c < n_channels; ++c) {
+        const std::span<const double> channel = values.subspan(c * n, n);
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (const double x : channel)
+            if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
+        if (!(low <= high)) low = high = 0;
+        // Half of the range first: all of it may be beyond the largest number.
+        const double step = std::max(std::ldexp(0.5 * high - 0.5 * low, 1 - bits),
+                                     least * std::max(std::abs(low), std::abs(high)));
+        lows.push_back(low);
+        steps.push_back(step);
+        for (const double x : channel)
+            multiples.push_back(
+                !std::isfinite(x) ? -1
+                : step > 0        ? static_cast<std::int32_t>(std::lround((0.5 * x - 0.5 * low) / (0.5 * step)))
+                                  : 0);
+    }
+}
+
+std::vector<double> Stepped::values() const
+{
+    std::vector<double> all;
+    all.reserve(multiples.size());
+    for (const std::int32_t k : multiples) {
+        const std::size_t channel = all.size() / (multiples.size() / lows.size());
+        all.push_back(k < 0 ? std::numeric_limits<double>::quiet_NaN() : lows[channel] + k * steps[channel]);
+    }
+    return all;
+}
 
 void Payload::add(std::string name, Precision precision, std::span<const double> values)
 {
-    entries_.push_back({std::move(name), precision, values.size()});
+    entries_.push_back({std::move(name), kind_of(precision), values.size()});
     if (precision == Precision::full)
         append_shuffled<std::uint64_t>(bytes_, values,
                                        [](double x) { return std::bit_cast<std::uint64_t>(x); });
@@ -41,13 +89,27 @@ void Payload::add(std::string name, Precision precision, std::span<const double>
                                        [](double x) { return static_cast<std::uint32_t>(x); });
 }
 
+void Payload::add(const std::string& name, const Stepped& stepped, int order)
+{
+    add(name + "_low", Precision::full, stepped.lows);
+    add(name + "_step", Precision::full, stepped.steps);
+    std::vector<std::uint32_t> numbers(stepped.multiples.begin(), stepped.multiples.end());
+    const std::size_t n = stepped.lows.empty() ? 0 : numbers.size() / stepped.lows.size();
+    for (std::size_t c = 0; c < stepped.lows.size(); ++c)
+        difference(std::span(numbers).subspan(c * n, n), order);
+    entries_.push_back({name, order == 1 ? "d1" : "d2", numbers.size()});
+    // The sign goes to the lowest bit, so that what is small has few bytes either way.
+    append_shuffled<std::uint32_t>(bytes_, std::span<const std::uint32_t>(numbers), [](std::uint32_t x) {
+        return x << 1 ^ (x >> 31 != 0 ? 0xffffffffu : 0u);
+    });
+}
+
 void Payload::write_table(JsonWriter& json) const
 {
     json.begin_object();
     for (const Entry& e : entries_) {
         json.key(e.name).begin_array();
-        json.value(e.precision == Precision::full ? "f8" : e.precision == Precision::single ? "f4" : "u4");
-        json.value(e.count).end_array();
+        json.value(e.kind).value(e.count).end_array();
     }
     json.end_object();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Positions and orientations of all bodies as polynomials in time elements.
-// As quaternions where directors are orthonormal at all nodes, else X itself; in single precision or on fewer
-// elements where the page would grow too large. What that loses is measured and told.
+// As quaternions where directors are orthonormal at all nodes, else X itself; rounded or on fewer elements where
+// the page would grow too large. What that loses is measured and told.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,6 +28,10 @@ constexpr std::size_t numbers_of(Form form)
 
 /// What directors at nodes may lose by becoming a quaternion: the page shows poses to 1e-13.
 constexpr double orthonormal = 1e-14;
+/// Of their range: what single precision keeps of numbers of this size.
+constexpr int bits_of_rounded = 23;
+/// On the page, compressed and as text: what motions of robots take, a little more.
+constexpr double bytes_in_double = 10, bytes_rounded = 2;
 /// Instants in an element, beside its ends, at which a thinned motion is held against the whole one.
 constexpr int checks = 3;
 
@@ -108,26 +112,24 @@ public:
     std::size_t n_nodes() const { return n_nodes_; }
     const Track& track() const { return track_; }
 
-    /// Number after number, each through all of time; in single precision less their middles.
-    void store(Payload& payload, bool is_single)
+    /// Number after number, each through all of time.
+    void store(Payload& payload, bool is_rounded)
     {
-        std::vector<double> all, middles;
+        std::vector<double> all;
         for (std::size_t b = 0; b < forms_.size(); ++b)
-            for (std::vector<double>& numbers : numbers_through_time(b)) {
-                const auto [least, most] = std::ranges::minmax(numbers);
-                // Less their middle, numbers far from zero keep their digits in single precision.
-                const double middle = is_single && std::isfinite(least + most) ? 0.5 * (least + most) : 0;
-                middles.push_back(middle);
-                for (double& x : numbers)
-                    if (x -= middle; is_single) x = static_cast<float>(x);
+            for (const std::vector<double>& numbers : numbers_through_time(b))
                 all.insert(all.end(), numbers.begin(), numbers.end());
-            }
-        payload.add("pose", is_single ? Precision::single : Precision::full, all);
-        payload.add("pose_middle", Precision::full, middles);
+        if (is_rounded) {
+            const Stepped stepped(all, all.size() / n_nodes_, bits_of_rounded);
+            payload.add("pose", stepped, 2);
+            all = stepped.values();
+        } else {
+            payload.add("pose", Precision::full, all);
+        }
         payload.add("pose_weight", Precision::full, track_.X.denominators);
         payload.add("pose_end", Precision::full, track_.mesh.ends);
         // The loss is measured on what is stored, read as the page reads it.
-        measure(all, middles);
+        measure(all);
     }
 
     Loss loss_at_nodes() const { return loss_; }
@@ -169,7 +171,7 @@ private:
     }
 
     /// Reads what was stored as the page does.
-    void measure(const std::vector<double>& all, const std::vector<double>& middles)
+    void measure(const std::vector<double>& all)
     {
         shown_ = track_.X;
         std::size_t channel = 0;
@@ -177,8 +179,7 @@ private:
             const std::size_t count = numbers_of(forms_[b]);
             for (std::size_t n = 0; n < n_nodes_; ++n) {
                 std::array<double, 12> x{};
-                for (std::size_t i = 0; i < count; ++i)
-                    x[i] = all[(channel + i) * n_nodes_ + n] + middles[channel + i];
+                for (std::size_t i = 0; i < count; ++i) x[i] = all[(channel + i) * n_nodes_ + n];
                 const Matrix34 X = configuration(numbers(n, b));
                 Matrix34 seen = forms_[b] == Form::directors ? configuration(x.data()) : X;
                 for (int i = 0; i < 3; ++i) seen[i] = x[static_cast<std::size_t>(i)];
@@ -226,23 +227,23 @@ void write_poses(ReportData& data, const Run& run, double most_bytes)
 {
     const Motion& motion = run.motion;
     std::optional<Poses> poses(std::in_place, run, Track{motion.mesh, motion.X});
-    const double bytes = static_cast<double>(poses->n_numbers() * sizeof(double));
-    const bool is_single = bytes > most_bytes, is_thinned = bytes > 2 * most_bytes && motion.n_elements() > 1;
+    const double n_numbers = static_cast<double>(poses->n_numbers()), n_rounded = most_bytes / bytes_rounded;
+    const bool is_rounded = n_numbers * bytes_in_double > most_bytes,
+               is_thinned = n_numbers > n_rounded && motion.n_elements() > 1;
     if (is_thinned) {
         const int degree = std::max(motion.X.degree, 3);
         const double n = static_cast<double>(motion.n_elements());
-        const double fit =
-            most_bytes / (sizeof(float) * static_cast<double>(poses->n_numbers() / poses->n_nodes()));
+        const double fit = n_rounded / static_cast<double>(poses->n_numbers() / poses->n_nodes());
         const double elements = std::max(1.0, std::floor((fit - 1) / degree));
         poses.emplace(run, thinned(motion, static_cast<std::size_t>(std::ceil(n / elements)), degree));
     }
-    poses->store(data.payload, is_single);
+    poses->store(data.payload, is_rounded);
     const Field& X = poses->track().X;
     const Loss loss =
         is_thinned ? loss_between(motion, poses->track(), poses->shown()) : poses->loss_at_nodes();
     JsonWriter& json = data.json;
     json.key("pose").begin_object();
-    json.member("precision", is_thinned ? "thinned" : is_single ? "single" : "double");
+    json.member("precision", is_thinned ? "thinned" : is_rounded ? "rounded" : "double");
     json.member("position_loss", loss.position).member("orientation_loss", loss.orientation);
     json.member("elements", motion.n_elements());
     json.member("degree", X.degree).member("continuous", X.continuous);
