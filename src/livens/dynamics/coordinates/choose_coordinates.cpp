@@ -25,7 +25,15 @@ struct Candidate {
     bool is_taken = false;
 };
 
-/// Those of rotation vectors only where they are wanted: they end at half a turn.
+/// Whether one of these is a component of its rotation vector.
+bool is_wanted_by_rotation(const Joint& joint, const std::vector<std::string>& wanted)
+{
+    return std::ranges::any_of(joint.readings, [&](const NamedCoordinate& one) {
+        return std::ranges::find(wanted, joint.name + "." + one.name) != wanted.end();
+    });
+}
+
+/// Those of a rotation vector only where one of them is wanted: they end at half a turn.
 std::vector<Candidate> candidates_of(const Model& model, const std::vector<std::string>& wanted)
 {
     std::vector<Candidate> all;
@@ -41,14 +49,12 @@ std::vector<Candidate> candidates_of(const Model& model, const std::vector<std::
     }
     for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
         const Joint& joint = model.joints()[j];
-        const std::size_t n_own = joint.coordinates.size();
-        for (std::size_t k = 0; k < n_own + joint.readings.size(); ++k) {
+        const std::size_t n = joint.coordinates.size() +
+                              (is_wanted_by_rotation(joint, wanted) ? joint.readings.size() : 0);
+        for (std::size_t k = 0; k < n; ++k) {
             const NamedCoordinate& one = joint.coordinate(k);
-            const std::string name = joint.name + "." + one.name;
-            if (k >= n_own && (find_coordinate(joint, one.name) == nullptr ||
-                               std::ranges::find(wanted, name) == wanted.end()))
-                continue;
-            add(Of::joint, j, static_cast<int>(k), name);
+            if (find_coordinate(joint, one.name) == nullptr) continue;
+            add(Of::joint, j, static_cast<int>(k), joint.name + "." + one.name);
             all.back().is_numbered = one.is_numbered();
         }
     }
