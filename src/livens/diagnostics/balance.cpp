@@ -10,6 +10,7 @@
 #include "livens/diagnostics/largest.h"
 #include "livens/multibody/rotors.h"
 #include "livens/solvers/patience.h"
+#include "livens/time/quadrature.h"
 
 namespace livens {
 namespace {
@@ -40,16 +41,33 @@ struct StartOfBalance {
 /// Momenta of rotors on the world, which holds them.
 struct RotorSupport {
     std::vector<Rotor> all;
+    bool do_turn = false;   ///< see turn_their_axes()
     RotorMomentum now, at_start;
+    Vector3 turned{};   ///< since the start
+
+    /// At Gauss points, where velocities inside an element are most exact.
+    void pass(const Model& model, const Motion& motion, int element)
+    {
+        if (!do_turn) return;
+        const Quadrature points = gauss(std::max(motion.X.degree, 1));
+        const double begin = motion.mesh.ends[element], length = motion.mesh.length(element);
+        for (std::size_t g = 0; g < points.points.size(); ++g) {
+            const State state = motion.at(begin + length * points.points[g]);
+            turned += length * points.weights[g] * rotor_turning(model, all, state.X, state.V);
+        }
+    }
 };
 
 /// Goes from element end to element end.
 class Balancing {
 public:
     Balancing(const Model& model, const Motion& motion, MotionPass& pass)
-        : model_(model), motion_(motion), pass_(pass), potential_(model), rotors_{rotors_of(model), {}, {}},
+        : model_(model), motion_(motion), pass_(pass), potential_(model),
           X_(static_cast<std::size_t>(motion.n_bodies))
-    {}
+    {
+        rotors_.all = rotors_of(model);
+        rotors_.do_turn = turn_their_axes(model, rotors_.all);
+    }
 
     /// The next `n` ends, or what is left of them. False: nothing is.
     bool next(int n, Balance& piece)
@@ -60,6 +78,7 @@ public:
         for (; end_ < last; ++end_) {
             Patience::ask();
             if (end_ > 0) total_.add(1, pass_.supply(end_ - 1));
+            if (end_ > 0) rotors_.pass(model_, motion_, end_ - 1);
             append_state(piece);
             append_supply(piece);
         }
@@ -122,7 +141,8 @@ private:
         piece.work.push_back(total_.work);
         // What turns rotors of joints to the world is theirs, and no momentum of bodies.
         const Vector3 linear = total_.linear - (rotors_.now.linear - rotors_.at_start.linear),
-                      angular = total_.angular - (rotors_.now.angular - rotors_.at_start.angular);
+                      angular =
+                          total_.angular + rotors_.turned - (rotors_.now.angular - rotors_.at_start.angular);
         piece.linear_impulse.push_back(linear);
         piece.angular_impulse.push_back(angular);
         piece.energy_drift.push_back(std::abs(piece.energy.back() - start_.energy - total_.work));

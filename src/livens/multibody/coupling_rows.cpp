@@ -89,15 +89,16 @@ SmoothFunction multiple(double factor)
 }
 
 constexpr std::size_t rotation_forms = 4;   // no other coordinate is of as many
-constexpr const char* rotation_ends = "the rotation vector of a ball joint gets to 175 degrees, where it ends";
+constexpr const char* rotation_ends =
+    "the rotation vector of a ball joint gets to 175 degrees, where it ends";
 
 double angle_left_of_rotation(const Point& q)
 {
     return widest_rotation - coordinate_at(CoordinateKind::rotation_angle, q).value;
 }
 
-/// Whether the shortest turn from one place to the next leads over half a turn, where a rotation vector begins
-/// again on the other side. Forms are s and c in any order of the first three.
+/// Whether the shortest turn from one place to the next leads over half a turn, where a rotation vector
+/// begins again on the other side. Forms are s and c in any order of the first three.
 bool leads_over_half_a_turn(const Point& from, const Point& to)
 {
     return from[3] < 0 && to[3] < 0 && from[0] * to[0] + from[1] * to[1] + from[2] * to[2] < 0;

@@ -42,8 +42,8 @@ struct Joint : JointLine {
     /// Functions that must be positive at assembly, where rows alone would admit another branch.
     std::vector<ConstraintRow> branches{};
     std::vector<NamedCoordinate> coordinates{};
-    /// Beside its coordinates, of a ball joint: the components of its rotation vector, which what is asked for
-    /// them takes as coordinates, and its length, which is only read.
+    /// Beside its coordinates, of a ball joint: the components of its rotation vector, which what is asked
+    /// for them takes as coordinates, and its length, which is only read.
     std::vector<NamedCoordinate> readings{};
     /// Of a ball joint with readings, in coordinates of `first` and `second`.
     TriadPair triads{};

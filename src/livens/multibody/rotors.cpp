@@ -48,9 +48,9 @@ std::string free_name(std::string name, const Find& find)
     return name;
 }
 
-/// 1 a second along the coordinate where all bodies move together: along an axis, or about the origin.
-double rate_together(const Rotor& rotor, std::span<const Matrix34> X, const Vector3& velocity,
-                     const Vector3& spin)
+/// All bodies by a spin about the origin, in each column; and along a velocity.
+std::vector<Matrix34> moved_together(std::span<const Matrix34> X, const Vector3& velocity,
+                                     const Vector3& spin)
 {
     std::vector<Matrix34> V;
     for (const Matrix34& x : X) {
@@ -59,7 +59,21 @@ double rate_together(const Rotor& rotor, std::span<const Matrix34> X, const Vect
             for (int i = 0; i < 3; ++i) v(i, c) = cross(spin, x.column(c))[i] + (c == 0 ? velocity[i] : 0);
         V.push_back(v);
     }
-    return coordinate_rate(rotor.coordinate, X, V);
+    return V;
+}
+
+/// 1 a second along the coordinate where all bodies move together: along an axis, or about the origin.
+double rate_together(const Rotor& rotor, std::span<const Matrix34> X, const Vector3& velocity,
+                     const Vector3& spin)
+{
+    return coordinate_rate(rotor.coordinate, X, moved_together(X, velocity, spin));
+}
+
+/// Of one to the world, beside other coordinates of its joint.
+bool turns_its_axis(const Model& model, const Rotor& rotor)
+{
+    const Joint& joint = model.joints()[static_cast<std::size_t>(rotor.joint)];
+    return joint.first == world && rotor.coordinate.is_angle() && joint.coordinates.size() > 1;
 }
 
 }   // namespace
@@ -94,6 +108,34 @@ RotorMomentum rotor_momentum(const Model& model, std::span<const Rotor> rotors, 
         for (int k = 0; k < 3; ++k) {
             sum.linear[k] += momentum * rate_together(rotor, X, axis(k), {});
             sum.angular[k] += momentum * rate_together(rotor, X, {}, axis(k));
+        }
+    }
+    return sum;
+}
+
+bool turn_their_axes(const Model& model, std::span<const Rotor> rotors)
+{
+    return std::ranges::any_of(rotors, [&](const Rotor& rotor) { return turns_its_axis(model, rotor); });
+}
+
+/// d/dt of <grad q, S X> for a spin S is q''(V, S X) + <grad q, S V>; the first by its values for sum and
+/// difference.
+Vector3 rotor_turning(const Model& model, std::span<const Rotor> rotors, std::span<const Matrix34> X,
+                      std::span<const Matrix34> V)
+{
+    Vector3 sum{};
+    for (const Rotor& rotor : rotors) {
+        if (!turns_its_axis(model, rotor)) continue;
+        const double momentum = rotor.inertia * coordinate_rate(rotor.coordinate, X, V);
+        const ConstraintRow row = coupling_row({{1, rotor.coordinate}}, 0, 1, "rotor");
+        for (int k = 0; k < 3; ++k) {
+            const std::vector<Matrix34> W = moved_together(X, {}, axis(k));
+            std::vector<Matrix34> more(V.begin(), V.end()), less = more;
+            for (std::size_t b = 0; b < W.size(); ++b) more[b] += W[b], less[b] += -1.0 * W[b];
+            const double mixed =
+                0.25 * (constraint_curvature(row, {}, X, more) - constraint_curvature(row, {}, X, less));
+            sum[k] +=
+                momentum * (mixed + coordinate_rate(rotor.coordinate, X, moved_together(V, {}, axis(k))));
         }
     }
     return sum;

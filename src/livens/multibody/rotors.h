@@ -33,6 +33,13 @@ struct RotorMomentum {
 RotorMomentum rotor_momentum(const Model& model, std::span<const Rotor> rotors, std::span<const Matrix34> X,
                              std::span<const Matrix34> V);
 
+/// By how much that about the origin changes a second although no rate does, since the axis of a second or
+/// third angle turns: the world does not supply this part. Zero for joints with one coordinate.
+Vector3 rotor_turning(const Model& model, std::span<const Rotor> rotors, std::span<const Matrix34> X,
+                      std::span<const Matrix34> V);
+/// Whether it may differ from zero.
+bool turn_their_axes(const Model& model, std::span<const Rotor> rotors);
+
 /// A model in which each rotor is a coordinate of a point mass (Body::is_rotor), x_k = rho q, and a joint
 /// holds both together: its bodies, joints and rows come first and in their order. Multipliers, positions and
 /// velocities of these are those of the model; the points have no weight and are no length of it.

@@ -106,7 +106,7 @@ TEST_F(Report, LossesAreStatedAndGrow)
     EXPECT_EQ(loss(1e6, "position"), 0);
     EXPECT_GT(loss(15000, "orientation"), 1e-9);
     EXPECT_LT(loss(15000, "orientation"), 2e-7);
-    EXPECT_GT(loss(3000, "orientation"), 1e-6);
+    EXPECT_GT(loss(3000, "orientation"), 2 * loss(15000, "orientation"));
     EXPECT_GT(loss(1000, "orientation"), loss(3000, "orientation"));
 }
 
@@ -114,19 +114,17 @@ TEST_F(Report, LossesAreStatedAndGrow)
 TEST(Stepped, NumbersComeBackToHalfAStep)
 {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
-                     inf = std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::max();
-    const std::vector<double> values{7e6, 7e6 + 1,  7e6 + 0.3, 7e6 + 0.9, -2,   nan,  inf,  1,
-                                     5,   5 + 1e-12, 5,         5,         nan,  nan,  nan,  nan,
-                                     0,   0,         0,         0,         -most, most, 0,   0.5 * most};
+                     inf = std::numeric_limits<double>::infinity();
+    const std::vector<double> values{7e6, 7e6 + 1,   7e6 + 0.3, 7e6 + 0.9, -2,  nan, inf,   1,
+                                     5,   5 + 1e-12, 5,         5,         nan, nan, nan,   nan,
+                                     0,   0,         0,         0,         -1,  1e9, 1e-12, 0.5};
     const Stepped stepped(values, 6, 23), least(values, 6, 23, 1e-6);
     const std::vector<double> back = stepped.values(), coarse = least.values();
     ASSERT_EQ(back.size(), values.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
         EXPECT_EQ(std::isnan(back[i]), !std::isfinite(values[i])) << i;
-        if (!std::isfinite(values[i])) continue;
-        const double step = stepped.steps[i / 4];
-        EXPECT_LE(std::abs(0.5 * back[i] - 0.5 * values[i]), 0.26 * step + 1e-9 * std::abs(values[i])) << i;
-        EXPECT_LE(step, std::ldexp(2 * most, -23));
+        if (std::isnan(back[i])) continue;
+        EXPECT_LE(std::abs(back[i] - values[i]), 0.501 * stepped.steps[i / 4]);
     }
     EXPECT_NEAR(stepped.steps[0], std::ldexp(1, -23), 1e-12);
     EXPECT_EQ(coarse[9], coarse[8]) << "rounding of a constant is none of its range";

@@ -49,8 +49,8 @@ std::vector<Candidate> candidates_of(const Model& model, const std::vector<std::
     }
     for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
         const Joint& joint = model.joints()[j];
-        const std::size_t n = joint.coordinates.size() +
-                              (is_wanted_by_rotation(joint, wanted) ? joint.readings.size() : 0);
+        const std::size_t n =
+            joint.coordinates.size() + (is_wanted_by_rotation(joint, wanted) ? joint.readings.size() : 0);
         for (std::size_t k = 0; k < n; ++k) {
             const NamedCoordinate& one = joint.coordinate(k);
             if (find_coordinate(joint, one.name) == nullptr) continue;
@@ -206,7 +206,8 @@ void take_of_bodies(Choice& choice, const Model& model)
              (bodies.empty() ? "" : ", which turn bodies " + bodies),
          "", "",
          "joints such as constant_velocity and perpendicular_axes leave turns free that are no coordinates",
-         "give a spherical joint 'angles', or take its rotation vector; or place the body's reference point away from the joint"});
+         "give a spherical joint 'angles', or take its rotation vector; or place the body's reference point "
+         "away from the joint"});
 }
 
 }   // namespace

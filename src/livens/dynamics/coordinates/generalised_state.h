@@ -39,9 +39,10 @@ class GeneralisedState;
 /// where these are placed.
 ///
 /// Drives are released: whoever states the coordinates drives them. Joints that do not act at the instant are
-/// left out. Chosen are the wanted ones, which may be components of the rotation vector of a ball joint; then coordinates of joints, in the order of the model, numbered ones
-/// (angle_1) last; then what these leave free, by positions and orientations of bodies: of a free body all
-/// six. In the list bodies stand before joints.
+/// left out. Chosen are the wanted ones, which may be components of the rotation vector of a ball joint; then
+/// coordinates of joints, in the order of the model, numbered ones (angle_1) last; then what these leave
+/// free, by positions and orientations of bodies: of a free body all six. In the list bodies stand before
+/// joints.
 ///
 /// Throws InputError: `coordinate-unknown`, `coordinate-twice`; `coordinates-dependent` for a wanted one that
 /// joints or the wanted ones before it determine; `coordinates-missing` where something can still move, such

@@ -339,29 +339,6 @@ void refuse_far(const Mechanism& mechanism, std::span<const double> way, double 
     }
 }
 
-/// Throws where a rotation vector is to be longer than it is known.
-void refuse_half_turns(const Mechanism& mechanism, std::span<const double> numbers)
-{
-    std::vector<double> squares(mechanism.model.joints().size(), 0.0);
-    std::size_t number = 0;
-    for (std::size_t i = 0; i < mechanism.coordinates.size(); ++i) {
-        const GeneralisedCoordinate& c = mechanism.coordinates[i];
-        if (mechanism.rows[i].is_of_rotation) {
-            double& square = squares[static_cast<std::size_t>(c.part)];
-            square += numbers[number] * numbers[number];
-            if (!(square <= widest_rotation * widest_rotation))
-                throw InputError({"coordinate-value", "q[" + c.name + "]",
-                                  "the rotation vector of joint '" +
-                                      mechanism.model.joints()[static_cast<std::size_t>(c.part)].name +
-                                      "' is longer than it is known",
-                                  to_text(std::sqrt(square), 4) + " rad", to_text(widest_rotation, 3),
-                                  "it begins again on the other side at half a turn",
-                                  "give the rotation the other way round, or the joint 'angles'"});
-        }
-        number += static_cast<std::size_t>(c.n_numbers());
-    }
-}
-
 /// In steps, each as long as the rows close by it and little is corrected.
 Placed led_in_steps(const Mechanism& mechanism, Placed here, std::span<const double> numbers)
 {
@@ -397,7 +374,7 @@ Placed lead(const Mechanism& mechanism, const Placed& from, std::span<const doub
 {
     const std::vector<double> way = mechanism.way(from.numbers, numbers);
     if (std::ranges::all_of(way, [](double one) { return one == 0; })) return from;
-    refuse_half_turns(mechanism, numbers);
+    mechanism.refuse_half_turns(numbers);
     refuse_far(mechanism, way, most_turns, most_lengths);
     if (!(mechanism.farthest_turn(from.by_rates, way) <= farthest_turned))
         throw InputError({"coordinate-value", "q", "bodies turn too far from where they are placed", "",

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "livens/base/error.h"
+#include "livens/base/text.h"
 #include "livens/dynamics/rows/rank.h"
 #include "livens/dynamics/rows/rows.h"
 #include "livens/dynamics/rows/twist.h"
@@ -146,6 +148,28 @@ std::vector<double> Mechanism::gone(std::span<const double> from, std::span<cons
         r += static_cast<std::size_t>(c.n_rates());
     }
     return all;
+}
+
+void Mechanism::refuse_half_turns(std::span<const double> numbers) const
+{
+    std::vector<double> squares(model.joints().size(), 0.0);
+    std::size_t number = 0;
+    for (std::size_t i = 0; i < coordinates.size(); ++i) {
+        const GeneralisedCoordinate& c = coordinates[i];
+        if (rows[i].is_of_rotation) {
+            double& square = squares[static_cast<std::size_t>(c.part)];
+            square += numbers[number] * numbers[number];
+            if (!(square <= widest_rotation * widest_rotation))
+                throw InputError({"coordinate-value", "q[" + c.name + "]",
+                                  "the rotation vector of joint '" +
+                                      model.joints()[static_cast<std::size_t>(c.part)].name +
+                                      "' is longer than it is known",
+                                  to_text(std::sqrt(square), 4) + " rad", to_text(widest_rotation, 3),
+                                  "it begins again on the other side at half a turn",
+                                  "give the rotation the other way round, or the joint 'angles'"});
+        }
+        number += static_cast<std::size_t>(c.n_numbers());
+    }
 }
 
 bool Mechanism::is_length(int coordinate) const

@@ -53,6 +53,8 @@ struct Mechanism {
     std::vector<double> way(std::span<const double> from, std::span<const double> to) const;
     /// `from` and a part of the way.
     std::vector<double> gone(std::span<const double> from, std::span<const double> way, double part) const;
+    /// Throws where a rotation vector is to be longer than it is known.
+    void refuse_half_turns(std::span<const double> numbers) const;
     bool is_length(int coordinate) const;
     /// What a coordinate is measured in: 1 rad, or a length of the model.
     double unit_of(int coordinate) const;

@@ -51,16 +51,14 @@ Stepped::Stepped(std::span<const double> values, std::size_t n_channels, int bit
         for (const double x : channel)
             if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
         if (!(low <= high)) low = high = 0;
-        // Half of the range first: all of it may be beyond the largest number.
-        const double step = std::max(std::ldexp(0.5 * high - 0.5 * low, 1 - bits),
-                                     least * std::max(std::abs(low), std::abs(high)));
+        const double step =
+            std::max(std::ldexp(high - low, -bits), least * std::max(std::abs(low), std::abs(high)));
         lows.push_back(low);
         steps.push_back(step);
         for (const double x : channel)
-            multiples.push_back(
-                !std::isfinite(x) ? -1
-                : step > 0        ? static_cast<std::int32_t>(std::lround((0.5 * x - 0.5 * low) / (0.5 * step)))
-                                  : 0);
+            multiples.push_back(!std::isfinite(x) ? -1
+                                : step > 0        ? static_cast<std::int32_t>(std::lround((x - low) / step))
+                                                  : 0);
     }
 }
 

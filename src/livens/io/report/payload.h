@@ -19,8 +19,8 @@ struct Stepped {
     /// What is not finite has no multiple. A step is at least `least` of the largest number of its channel.
     Stepped(std::span<const double> values, std::size_t n_channels, int bits, double least = 0);
 
-    std::vector<double> lows, steps;        ///< of each channel
-    std::vector<std::int32_t> multiples;    ///< -1: not a number
+    std::vector<double> lows, steps;       ///< of each channel
+    std::vector<std::int32_t> multiples;   ///< -1: not a number
 
     /// As whoever reads it has them.
     std::vector<double> values() const;
@@ -35,7 +35,8 @@ public:
     /// neighbours are alike; lows and steps as arrays `name`_low and `name`_step before it.
     void add(const std::string& name, const Stepped& stepped, int order);
 
-    /// {"name": [kind, count]}, kind "f8", "f4", "u4", or "d1", "d2" of differences, in the order of the bytes.
+    /// {"name": [kind, count]}, kind "f8", "f4", "u4", or "d1", "d2" of differences, in the order of the
+    /// bytes.
     void write_table(JsonWriter& json) const;
     /// See packed().
     std::string encoded(int level) const;

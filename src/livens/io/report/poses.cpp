@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Positions and orientations of all bodies as polynomials in time elements.
-// As quaternions where directors are orthonormal at all nodes, else X itself; rounded or on fewer elements where
-// the page would grow too large. What that loses is measured and told.
+// As quaternions where directors are orthonormal at all nodes, else X itself; rounded or on fewer elements
+// where the page would grow too large. What that loses is measured and told.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -37,13 +37,13 @@ const NamedCoordinate& coordinate_of(const std::string& path, const CoupledJoint
     if (const NamedCoordinate* found = find_coordinate(joint, term.coordinate)) return *found;
     std::string has;
     for (const NamedCoordinate& one : joint.coordinates) has += (has.empty() ? "" : ", ") + one.name;
-    refuse_terms("joint-coordinate", path,
-                 "joint '" + joint.name + "' (" + joint.type + ") has no " + term.coordinate, "",
-                 has.empty() ? "it has no coordinate" : "it has: " + has,
-                 "revolute, cylindrical, screw, planar and parallel_axes joints have an angle; universal "
-                 "joints angle_1 and angle_2, spherical ones with 'angles' angle_3 as well; spherical ones of "
-                 "bodies rotation_vector_x, _y and _z; prismatic, cylindrical, screw and point_on_line "
-                 "joints a displacement");
+    refuse_terms(
+        "joint-coordinate", path, "joint '" + joint.name + "' (" + joint.type + ") has no " + term.coordinate,
+        "", has.empty() ? "it has no coordinate" : "it has: " + has,
+        "revolute, cylindrical, screw, planar and parallel_axes joints have an angle; universal "
+        "joints angle_1 and angle_2, spherical ones with 'angles' angle_3 as well; spherical ones of "
+        "bodies rotation_vector_x, _y and _z; prismatic, cylindrical, screw and point_on_line "
+        "joints a displacement");
 }
 
 /// The reaction is that on the second body of the last joint. The other one is the first of those that move

@@ -45,7 +45,7 @@ JointCoordinate from(const JointCoordinate& coordinate, const Configurations& X)
 
 /// Positions do not tell whole turns: where nobody counts them, an angle nearer than this to half a turn is
 /// not a number.
-constexpr double widest_angle = widest_rotation;
+constexpr double widest_angle = widest_rotation;   // as near to half a turn
 
 /// Whether the gradient of a form by X of its body j, or i, has more than a first column.
 bool turns(const PairForm& form, bool by_j)

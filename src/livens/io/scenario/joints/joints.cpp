@@ -260,15 +260,16 @@ bool check_frames(const Section& joint)
 
 Key coordinate_key()
 {
-    return {"coordinate",
-            types::choice,
-            "Which coordinate of the joint. Needed only if the joint has several, or if it is a component of "
-            "the rotation vector of a spherical joint, from its first frame to its second, up to 175 degrees.",
-            "",
-            "",
-            false,
-            {"angle", "displacement", "angle_1", "angle_2", "angle_3", "rotation_vector_x",
-             "rotation_vector_y", "rotation_vector_z"}};
+    return {
+        "coordinate",
+        types::choice,
+        "Which coordinate of the joint. Needed only if the joint has several, or if it is a component of "
+        "the rotation vector of a spherical joint, from its first frame to its second, up to 175 degrees.",
+        "",
+        "",
+        false,
+        {"angle", "displacement", "angle_1", "angle_2", "angle_3", "rotation_vector_x", "rotation_vector_y",
+         "rotation_vector_z"}};
 }
 
 JointReference find_coordinate(const Builder& builder, const Section& section, const std::string& path)

@@ -87,8 +87,9 @@ std::vector<Key> and_along_both(std::vector<Key> keys)
 {
     keys.push_back(table_along_angle("angle", "the angle"));
     keys.push_back(
-        Key{"displacement", types::table, "Damping, spring, rotor and limits along the displacement."}.holding(
-            {"displacement of a joint", "Loads along the displacement.", keys_along_displacement()}));
+        Key{"displacement", types::table, "Damping, spring, rotor and limits along the displacement."}
+            .holding(
+                {"displacement of a joint", "Loads along the displacement.", keys_along_displacement()}));
     return keys;
 }
 
