@@ -150,7 +150,7 @@ std::vector<double> Mechanism::gone(std::span<const double> from, std::span<cons
     return all;
 }
 
-void Mechanism::refuse_half_turns(std::span<const double> numbers) const
+void Mechanism::refuse_half_turns(std::span<const double> target) const
 {
     std::vector<double> squares(model.joints().size(), 0.0);
     std::size_t number = 0;
@@ -158,7 +158,7 @@ void Mechanism::refuse_half_turns(std::span<const double> numbers) const
         const GeneralisedCoordinate& c = coordinates[i];
         if (rows[i].is_of_rotation) {
             double& square = squares[static_cast<std::size_t>(c.part)];
-            square += numbers[number] * numbers[number];
+            square += target[number] * target[number];
             if (!(square <= widest_rotation * widest_rotation))
                 throw InputError({"coordinate-value", "q[" + c.name + "]",
                                   "the rotation vector of joint '" +

@@ -54,7 +54,7 @@ struct Mechanism {
     /// `from` and a part of the way.
     std::vector<double> gone(std::span<const double> from, std::span<const double> way, double part) const;
     /// Throws where a rotation vector is to be longer than it is known.
-    void refuse_half_turns(std::span<const double> numbers) const;
+    void refuse_half_turns(std::span<const double> target) const;
     bool is_length(int coordinate) const;
     /// What a coordinate is measured in: 1 rad, or a length of the model.
     double unit_of(int coordinate) const;
