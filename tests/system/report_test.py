@@ -9,6 +9,7 @@ import base64
 import bisect
 import hashlib
 import http.client
+import itertools
 import json
 import math
 import os
@@ -40,22 +41,34 @@ class Page:
         self.meta = json.loads(meta)
         plain, at, self.arrays = zlib.decompress(base64.b64decode(numbers, validate=True)), 0, {}
         for name, (kind, count) in self.meta["arrays"].items():
-            size, letter = {"f8": (8, "d"), "f4": (4, "f"), "u4": (4, "I")}[kind]
+            size, letter = {"f8": (8, "d"), "f4": (4, "f"), "u4": (4, "I"), "d1": (4, "I"), "d2": (4, "I")}[kind]
             block = plain[at:at + size * count]
             mixed = bytearray(size * count)
             for k in range(size):   # bytes of one significance lie together
                 mixed[k::size] = block[k * count:(k + 1) * count]
-            self.arrays[name] = struct.unpack(f"<{count}{letter}", mixed)
+            numbers = struct.unpack(f"<{count}{letter}", mixed)
+            self.arrays[name] = numbers if kind[0] != "d" else self.summed(name, numbers, int(kind[1]))
             at += size * count
         assert at == len(plain), "numbers that no name belongs to"
+
+    def summed(self, name, differences, order):
+        """Whole multiples of a step for each channel, from their differences modulo 2^32."""
+        lows, steps, numbers = self.arrays[f"{name}_low"], self.arrays[f"{name}_step"], []
+        n = len(differences) // max(len(lows), 1)
+        for channel, (low, step) in enumerate(zip(lows, steps)):
+            one = [(x >> 1) ^ -(x & 1) for x in differences[channel * n:(channel + 1) * n]]
+            for _ in range(order):
+                one = list(itertools.accumulate(one))
+            whole = [(x + 2**31) % 2**32 - 2**31 for x in one]
+            numbers += [math.nan if x < 0 else low + x * step for x in whole]
+        return numbers
 
     def stored(self, body, node):
         """X of a body at a node, as 12 numbers."""
         pose, forms = self.meta["pose"], self.meta["pose"]["forms"]
         nodes = len(self.arrays["pose"]) // sum(forms)
         first = sum(forms[:body])
-        x = [self.arrays["pose"][(first + i) * nodes + node] + self.arrays["pose_middle"][first + i]
-             for i in range(forms[body])]
+        x = [self.arrays["pose"][(first + i) * nodes + node] for i in range(forms[body])]
         if forms[body] == 12:
             return x
         if forms[body] == 3:

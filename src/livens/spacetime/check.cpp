@@ -170,9 +170,17 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
         throw InputError(
             {"conditions-method", path, what + " cannot take conditions by component", "", "", why, help});
     };
-    if (!std::holds_alternative<Lobatto>(method) && !std::holds_alternative<AutomaticFamily>(method))
+    const auto* mixed = std::get_if<Mixed>(&method);
+    if (!std::holds_alternative<Lobatto>(method) && !std::holds_alternative<AutomaticFamily>(method) &&
+        mixed == nullptr)
         refuse("method.family", "the method " + name_of(method),
-               "momenta at both ends are unknowns of lobatto alone", "use lobatto");
+               "momenta at both ends are unknowns of lobatto and mixed alone", "use lobatto");
+    if (mixed != nullptr && mixed->start == Mixed::Start::strong)
+        refuse("method.momentum", "the strong momentum",
+               "its law has no momenta at the ends of time that conditions could decide",
+               "take the natural momentum");
+    if (mixed != nullptr && !problem.unknowns.is_empty())
+        refuse("method.family", "elements 'mixed' with unknown numbers", "", "use lobatto");
     if (given.turn && !(norm(given.turn->axis) > 0))
         throw InputError(
             {"axis-zero", "time.periodic", "the axis of the turn must not be zero", "0, 0, 0", "", "", ""});
@@ -182,7 +190,11 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
                               "the value of '" + one.quantity.name + "' is no number", to_text(one.value),
                               "a finite number", "", ""});
     for (const Condition& one : given.components) refuse_no_speed(one);
-    close_ends(model, problem, start_of(time), end_of(time), options.initial);   // throws
+    const Ends ends = close_ends(model, problem, start_of(time), end_of(time), options.initial);   // throws
+    if (mixed != nullptr && ends.n_numbers > 0)
+        refuse("method.family", "elements 'mixed'",
+               "a periodic motion that keeps its energy or momenta is found with numbers beside it",
+               "use lobatto");
 }
 
 /// Unknown numbers: those of the problem itself, before any is looked for.

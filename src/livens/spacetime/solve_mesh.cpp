@@ -148,6 +148,22 @@ double refuse_undetermined(Window& window, ConditionNumbersOfLast& last, SolveRe
     return found.moved;
 }
 
+/// Of the elements of the paper by nodal ones about their motion: it is the conditions that are asked, and a
+/// finer element tells a conjugate time from one nearby.
+void refuse_undetermined(const Model& model, const Ends& ends, const Method& method,
+                         ConditionNumbersOfLast& last, Solution& solution)
+{
+    const Motion& motion = solution.motion;
+    SolveReport& report = solution.report;
+    const ModelTables tables(model, ends.independent);
+    NodalWindow nodal(tables, motion.mesh, ends,
+                      lobatto_rule(std::clamp(2 * std::get<Mixed>(method).degree, 4, 8)));
+    const bool is_formed = nodal.open(0, motion.n_elements(), report) &&
+                           nodal.start_from([&](double t) { return motion.at(t); }) &&
+                           nodal.equations().residual() && nodal.equations().factorise();
+    if (is_formed) report.moved_by_rounding = refuse_undetermined(nodal, last, report);
+}
+
 /// The equations of a march as those of one window, at its motion: of all elements, or of radau the last one.
 void measure_at_solution(const ModelTables& tables, const Motion& motion, const Ends& ends,
                          const ElementRule& rule, SolveReport& report, const std::function<bool()>& goes_on)
@@ -273,11 +289,13 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
         if (report.converged() && !proposals.told().empty()) report.notes.push_back(proposals.told());
     }
     ConditionNumbersOfLast last(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
-    if (!ends.has_state() && !is_mixed && problem.is_determination_asked && report.converged())
+    const bool is_asked = !ends.has_state() && problem.is_determination_asked;
+    if (is_asked && !is_mixed && report.converged())
         solution.report.moved_by_rounding = refuse_undetermined(*window, last, report);
     if (!report.converged() && report.status != SolveStatus::cancelled)
         solution.cannot_begin = why_unseen(numbered);
     finish(tables, *window, ends, method, options.condition, last, solution);
+    if (is_asked && is_mixed && report.converged()) refuse_undetermined(model, ends, method, last, solution);
     if (report.converged()) report_no_period(model, ends, solution.numbers, solution.motion, report);
     if (phases && !report.converged() && report.status != SolveStatus::cancelled)
         if (const std::string beginning = begin_in_words(model, mesh.start(), mesh.end()); !beginning.empty())

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "livens/dynamics/instant/instant.h"
@@ -22,6 +23,8 @@ public:
     bool place(double t, const double* X, const double* X_low, const std::vector<double>& momenta);
     /// The same from a state that need not keep to the joints; its places are brought onto them.
     bool place(const State& state);
+    /// Velocities as they are told where elements do not keep to the joints: values are of these.
+    void tell(std::vector<Matrix34> velocities) { V_ = std::move(velocities); }
     /// X of `from` moved along a scaled twist and brought onto the joints, with other momenta.
     bool place_moved(const EndPoint& from, const double* scaled_twist, const std::vector<double>& momenta);
 

@@ -9,14 +9,16 @@
 
 namespace livens::mixed {
 
-Block::Block(Equations equations, SparseBackend backend)
-    : equations_(std::move(equations)), tangent_(equations_), scaling_(equations_.space()), lu_(backend)
+Block::Block(Equations equations, SparseBackend backend, Border* border)
+    : equations_(std::move(equations)), border_(border), tangent_(equations_), scaling_(equations_.space()),
+      lu_(backend)
 {
     fields_[0] = fields_[1] = equations_.space().zero();
 }
 
 bool Block::residual()
 {
+    if (border_ != nullptr && !border_->evaluate(equations_, fields())) return false;
     bad_load_ = equations_.residual(fields(), residual_);
     return bad_load_.empty() &&
            std::all_of(residual_.begin(), residual_.end(), [](double r) { return std::isfinite(r); });
@@ -24,37 +26,69 @@ bool Block::residual()
 
 bool Block::factorise()
 {
-    const bool is_new = tangent_.evaluate(fields(), scaled_);
-    const std::span<const double> of_rows = scaling_.rows(), of_columns = scaling_.columns();
-    for (int c = 0; c < scaled_.size; ++c)
-        for (int k = scaled_.column_starts[c]; k < scaled_.column_starts[c + 1]; ++k)
-            scaled_.values[k] *= of_rows[scaled_.rows[k]] * of_columns[c];
-    if (is_new) lu_.analyse(scaled_);
-    return lu_.factorise(scaled_);
+    bool is_new = tangent_.evaluate(fields(), inner());
+    SparseMatrix& A = inner();
+    scaled_.rows.assign(scaling_.rows().begin(), scaling_.rows().end());
+    scaled_.columns.assign(scaling_.columns().begin(), scaling_.columns().end());
+    for (int c = 0; c < A.size; ++c)
+        for (int k = A.column_starts[c]; k < A.column_starts[c + 1]; ++k)
+            A.values[k] *= scaled_.rows[A.rows[k]] * scaled_.columns[c];
+    if (border_ != nullptr) {
+        border_->add_to(scaled_, equations_, fields());
+        is_new = true;
+    }
+    if (is_new) lu_.analyse(scaled_.all);
+    return lu_.factorise(scaled_.all);
 }
 
+/// With a border, increments end with those of momenta in world axes.
 void Block::solve(std::span<double> dx)
 {
-    work_.resize(residual_.size());
-    increment_.resize(residual_.size());
-    for (std::size_t i = 0; i < residual_.size(); ++i) work_[i] = -residual_[i] * scaling_.rows()[i];
-    solve_refined(lu_, scaled_, work_, increment_);
-    for (std::size_t i = 0; i < increment_.size(); ++i) dx[i] = increment_[i] * scaling_.columns()[i];
+    std::vector<double> rows = residual_;
+    if (border_ != nullptr)
+        for (const double missed : border_->conditions().missed()) rows.push_back(-missed);
+    work_.resize(rows.size());
+    increment_.resize(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) work_[i] = -rows[i] * scaled_.rows[i];
+    solve_refined(lu_, scaled_.all, work_, increment_);
+    for (std::size_t i = 0; i < increment_.size(); ++i) increment_[i] *= scaled_.columns[i];
+    const std::size_t n = residual_.size();
+    std::copy_n(increment_.begin(), n, dx.begin());
+    if (border_ != nullptr) border_->conditions().to_momenta(increment_.data() + n, dx.data() + n);
 }
 
 bool Block::move(std::span<const double> dx, double damping)
 {
     current_ = 1 - kept_;
     fields_[current_] = fields_[kept_];
-    equations_.space().add(fields_[current_], dx, damping);
+    const auto n = static_cast<std::size_t>(equations_.space().size());
+    equations_.space().add(fields_[current_], dx.first(n), damping);
+    if (border_ != nullptr) border_->conditions().move(dx.subspan(n), damping);
     return true;
+}
+
+void Block::keep()
+{
+    kept_ = current_;
+    if (border_ != nullptr) border_->conditions().keep();
+}
+
+double Block::size_of(std::span<const double> dx) const
+{
+    const double size = scaling_.size_of(dx);
+    if (border_ == nullptr) return size;
+    const double of_momenta =
+        border_->conditions().size_of(dx.subspan(static_cast<std::size_t>(equations_.space().size())));
+    return of_momenta <= size || std::isnan(size) ? size : of_momenta;
 }
 
 NewtonProblem::Rows Block::rows() const
 {
     Rows rows;
-    rows.size = worst().value;
     rows.terms = std::max(scaling_.largest(fields()), 1e-300);
+    // What conditions miss counts by its share of their scales.
+    const double missing = border_ != nullptr ? rows.terms * border_->conditions().largest() : 0;
+    rows.size = std::max(worst().value, missing);
     return rows;
 }
 
@@ -63,10 +97,10 @@ void Block::measure_condition(SolveReport& report, const std::function<bool()>& 
     begin();
     if (!factorise()) return;
     const ConditionNumbers condition =
-        condition_numbers(scaled_, lu_, scaling_.rows(), scaling_.columns(), goes_on);
+        condition_numbers(scaled_.all, lu_, scaled_.rows, scaled_.columns, goes_on);
     report.condition_1 = condition.one;
     report.condition_2 = condition.two;
-    report.scaled_condition = condition_numbers(scaled_, lu_, {}, {}, goes_on).one;
+    report.scaled_condition = condition_numbers(scaled_.all, lu_, {}, {}, goes_on).one;
 }
 
 }   // namespace livens::mixed

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "livens/solvers/newton.h"
+#include "livens/spacetime/mixed/border.h"
 #include "livens/spacetime/mixed/scaling.h"
 #include "livens/spacetime/mixed/tangent.h"
 
@@ -15,7 +16,8 @@ namespace livens::mixed {
 /// solution refined once. Increments are not scaled.
 class Block final : public NewtonProblem {
 public:
-    Block(Equations equations, SparseBackend backend);
+    /// `border`: of conditions by component, or null; must outlive it.
+    Block(Equations equations, SparseBackend backend, Border* border = nullptr);
     Block(const Block&) = delete;   // its parts know each other
     Block& operator=(const Block&) = delete;
 
@@ -31,23 +33,30 @@ public:
     /// Of the matrix as published, and of the scaled one that is factorised, at the current point.
     void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
 
-    int n_unknowns() const override { return equations_.space().size(); }
+    int n_unknowns() const override
+    {
+        return equations_.space().size() + (border_ != nullptr ? border_->conditions().n_numbers() : 0);
+    }
     bool residual() override;
     bool factorise() override;
     void solve(std::span<double> dx) override;
     bool move(std::span<const double> dx, double damping) override;
-    void keep() override { kept_ = current_; }
-    double size_of(std::span<const double> dx) const override { return scaling_.size_of(dx); }
+    void keep() override;
+    double size_of(std::span<const double> dx) const override;
     Rows rows() const override;
 
 private:
+    /// The matrix of the equations alone.
+    SparseMatrix& inner() { return border_ != nullptr ? scaled_.inner : scaled_.all; }
+
     Equations equations_;
+    Border* border_;
     Tangent tangent_;
     Scaling scaling_;
     SparseLU lu_;
     Fields fields_[2];
     int current_ = 0, kept_ = 0;
-    SparseMatrix scaled_;
+    ScaledMatrix scaled_;
     std::vector<double> residual_, work_, increment_;
     std::string bad_load_;   ///< of the last residual
 };

@@ -38,6 +38,12 @@ TurningMomentum::TurningMomentum(const Body& body, const Matrix34& X, const Matr
     : is_point_(body.is_point), mass_(body.mass), p_((V * body.mass).column(0)), L_(moment(X, V * body.mass))
 {}
 
+TurningMomentum::TurningMomentum(const Body& body, const double* momenta)
+    : is_point_(body.is_point), mass_(body.mass), p_{momenta[0], momenta[1], momenta[2]}, L_{}
+{
+    if (!is_point_) L_ = {momenta[3], momenta[4], momenta[5]};
+}
+
 Matrix34 TurningMomentum::at(const Matrix34& X, Matrix<12, 12>* tangent) const
 {
     if (tangent != nullptr) *tangent = {};

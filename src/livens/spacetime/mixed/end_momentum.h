@@ -20,6 +20,8 @@ class TurningMomentum {
 public:
     /// p and L are those of the stated X and V.
     TurningMomentum(const Body& body, const Matrix34& X, const Matrix34& V);
+    /// Six numbers: p, then L; of a point mass three.
+    TurningMomentum(const Body& body, const double* momenta);
 
     /// P and, if asked for, d(columns of P)/d(columns of X); nan where the directors have collapsed.
     Matrix34 at(const Matrix34& X, Matrix<12, 12>* tangent = nullptr) const;

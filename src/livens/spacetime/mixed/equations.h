@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "livens/spacetime/mixed/end_momentum.h"
@@ -24,6 +25,7 @@ public:
 
     const FieldSpace& space() const { return space_; }
     const EndMomentum& given(bool at_end) const { return at_end ? at_end_ : at_start_; }
+    void give(bool at_end, EndMomentum momentum) { (at_end ? at_end_ : at_start_) = std::move(momentum); }
     /// Rows at `fields`; the solved ones are returned, all are kept for end_momentum(). Tells of a load that
     /// is not finite, empty if all are.
     std::string residual(const Fields& fields, std::vector<double>& r);

@@ -12,6 +12,7 @@
 #include "livens/base/text.h"
 #include "livens/spacetime/mixed/bases.h"
 #include "livens/spacetime/mixed/block.h"
+#include "livens/spacetime/mixed/border.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -87,6 +88,10 @@ MixedWindow::MixedWindow(const ModelTables& tables, const TimeMesh& mesh, const 
         for (std::size_t b = 0; b < state->V.size(); ++b)
             end->P.push_back(state->V[b] * tables.model->bodies()[b].mass);
     }
+    if (!ends.has_components()) return;
+    // Places at both ends are unknown, and momenta there close the law.
+    given_ = {false, true, false, true};
+    border_ = std::make_unique<Border>(*tables.model, ends);
 }
 
 MixedWindow::~MixedWindow() = default;
@@ -122,7 +127,7 @@ bool MixedWindow::open(int first, int last, SolveReport&)
     block_ =
         std::make_unique<mixed::Block>(Equations(std::move(space), momentum_of(given_.X_at_start, start_),
                                                  momentum_of(given_.X_at_end, end_)),
-                                       method_.linear_solver);
+                                       method_.linear_solver, border_.get());
     return true;
 }
 
@@ -130,6 +135,9 @@ bool MixedWindow::start_from(const Guess& guess)
 {
     if (!guess) return false;
     take_guess(guess);
+    if (border_ != nullptr)
+        for (const bool last : {false, true})
+            if (!border_->conditions().begin(last, guess(mesh_.ends[last ? last_ : first_]))) return false;
     fix_known();
     block_->begin();
     return true;

@@ -14,6 +14,7 @@
 
 namespace livens::mixed {
 class Block;
+class Border;
 }   // namespace livens::mixed
 
 namespace livens::inline spacetime_internal {
@@ -59,6 +60,7 @@ private:
     const TimeMesh& mesh_;
     const Ends& ends_;
     const Mixed& method_;
+    std::unique_ptr<mixed::Border> border_;   // of conditions by component, or null
     mixed::Coordinates coordinates_;
     mixed::Given given_;
     End start_, end_;

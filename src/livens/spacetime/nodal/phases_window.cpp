@@ -171,8 +171,7 @@ bool PhasesWindow::residual()
                             phases_.back()->system().conditions()->point(true), mesh_.end() - mesh_.start(),
                             [&](const NamedCoordinate& q, double from) {
                                 for (const auto& phase : phases_)
-                                    from = followed(q, stated_, phase->system().layout(),
-                                                    phase->system().nodes(), from);
+                                    from = phase->system().followed(q, stated_, from);
                                 return from;
                             });
 }

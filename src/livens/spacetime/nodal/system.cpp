@@ -81,11 +81,32 @@ int NodalSystem::n_unknowns() const
     return static_cast<int>(n_node_numbers()) + (conditions_ != nullptr ? conditions_->n_numbers() : 0);
 }
 
+bool NodalSystem::evaluate_conditions()
+{
+    const int last = layout_.n_nodes() - 1, n = layout_.n_elements();
+    const auto at = [&](int A, int end, int e) {
+        return EndPlaces{layout_.times[static_cast<std::size_t>(end)], nodes_.X(A), nodes_.low(A),
+                         layout_.h(e)};
+    };
+    return conditions_->evaluate({at(0, 0, 0), at(last, n, n - 1)},
+                                 [&](const NamedCoordinate& coordinate, double from) {
+                                     return followed(coordinate, conditions_->stated(), from);
+                                 });
+}
+
+double NodalSystem::followed(const NamedCoordinate& coordinate, std::span<const Matrix34> stated,
+                             double from) const
+{
+    FollowedAngle angle(coordinate, stated, from);
+    for (int A = 0; A < layout_.n_nodes(); ++A) angle.pass(nodes_.X(A));
+    return angle.now();
+}
+
 bool NodalSystem::residual()
 {
     evaluations_ += layout_.n_nodes();
     if (conditions_ == nullptr) return rows_.evaluate(layout_, nodes_);
-    if (!conditions_->evaluate(layout_, nodes_)) return false;
+    if (!evaluate_conditions()) return false;
     for (const bool last : {false, true})
         rows_.end_momentum(last).about_reference = conditions_->momenta(last);
     return rows_.evaluate(layout_, nodes_);
@@ -96,7 +117,7 @@ void NodalSystem::form_all(Elimination& elimination)
     elimination.begin(layout_, nodes_);
     tangent_.form(layout_, nodes_, rows_, elimination);
     if (conditions_ == nullptr) return;
-    conditions_->differentiate(layout_, nodes_);
+    conditions_->differentiate({&nodes_.basis(0), &nodes_.basis(layout_.n_nodes() - 1)});
     const DenseMatrix columns = conditions_->columns(elimination);
     elimination.stand_at(tables_, nodes_);
     elimination.close_with(conditions_->closing(), columns);

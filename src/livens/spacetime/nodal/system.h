@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "livens/solvers/newton.h"
-#include "livens/spacetime/nodal/end_conditions.h"
+#include "livens/spacetime/march/end_conditions.h"
 #include "livens/spacetime/nodal/nodes.h"
 #include "livens/spacetime/nodal/rows.h"
 #include "livens/spacetime/nodal/tangent.h"
@@ -51,6 +51,8 @@ public:
     /// Of the conditions by component, or null.
     EndConditions* conditions() { return conditions_; }
     const EndConditions* conditions() const { return conditions_; }
+    /// An angle at the last node that is `from` at the first, node after node.
+    double followed(const NamedCoordinate& coordinate, std::span<const Matrix34> stated, double from) const;
     /// The bases fit the nodes to rounding: nothing was pulled since they were made.
     bool bases_fit() const { return correction_ < 1e-15; }
 
@@ -84,6 +86,7 @@ private:
     void form_all(Elimination& elimination);
     std::size_t n_node_numbers() const;
     std::unique_ptr<Elimination> on_null_spaces() const;
+    bool evaluate_conditions();
     bool pull(bool are_placed);
     void measure();
     double impulse_of(int e, double& motion) const;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // theory.md, "Conditions by component".
-#include "livens/spacetime/nodal/end_conditions.h"
+#include "livens/spacetime/march/end_conditions.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "livens/spacetime/march/components.h"
-#include "livens/spacetime/nodal/nodes.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -73,16 +72,10 @@ DenseMatrix MissedConditions::derivatives(bool last, const EndPoint& point,
     return D;
 }
 
-double followed(const NamedCoordinate& coordinate, const std::vector<Matrix34>& stated,
-                const WindowLayout& layout, const Nodes& nodes, double from)
+void FollowedAngle::pass(const double* X)
 {
-    double now = from - coordinate.at_stated;
-    for (int A = 0; A < layout.n_nodes(); ++A) {
-        std::vector<Matrix34> X(stated.size());
-        for (std::size_t b = 0; b < X.size(); ++b) std::copy_n(nodes.X(A) + 12 * b, 12, X[b].a);
-        now = turned_to(coordinate_change(coordinate.coordinate, stated, X), now);
-    }
-    return coordinate.at_stated + now;
+    for (std::size_t b = 0; b < X_.size(); ++b) std::copy_n(X + 12 * b, 12, X_[b].a);
+    now_ = turned_to(coordinate_change(coordinate_.coordinate, stated_, X_), now_);
 }
 
 EndConditions::EndConditions(const ModelTables& tables, const Ends& ends)
@@ -108,19 +101,16 @@ void EndConditions::move(std::span<const double> dp, double damping)
         for (std::size_t i = 0; i < n; ++i) current_[end][i] = kept_[end][i] + damping * dp[end * n + i];
 }
 
-bool EndConditions::evaluate(const WindowLayout& layout, const Nodes& nodes)
+bool EndConditions::evaluate(const std::array<EndPlaces, 2>& ends, const MissedConditions::Followed& followed)
 {
-    const int last = layout.n_nodes() - 1, n = layout.n_elements();
-    lengths_ = {std::abs(layout.h(0)), std::abs(layout.h(n - 1))};
-    for (const int end : {0, 1}) {
-        const int A = end == 0 ? 0 : last;
-        if (!points_[end].place(layout.times[end == 0 ? 0 : n], nodes.X(A), nodes.low(A), current_[end]))
-            return false;
+    for (std::size_t end = 0; end < 2; ++end) {
+        const EndPlaces& at = ends[end];
+        lengths_[end] = std::abs(at.length);
+        if (!points_[end].place(at.t, at.X, at.X_low, current_[end])) return false;
         current_[end] = points_[end].momenta();
+        if (at.told) points_[end].tell(at.told(current_[end]));
     }
-    return missed_.compare(
-        points_[0], points_[1], std::abs(layout.times[n] - layout.times[0]),
-        [&](const NamedCoordinate& q, double from) { return followed(q, stated_, layout, nodes, from); });
+    return missed_.compare(points_[0], points_[1], std::abs(ends[1].t - ends[0].t), followed);
 }
 
 std::vector<double> EndConditions::roundings() const
@@ -130,13 +120,13 @@ std::vector<double> EndConditions::roundings() const
     return all;
 }
 
-void EndConditions::differentiate(const WindowLayout& layout, const Nodes& nodes)
+void EndConditions::differentiate(const std::array<const ConstraintBasis*, 2>& bases)
 {
     const int f = tables_.freedoms(),
               m = ends_.is_phase() ? 2 * f : static_cast<int>(ends_.components.size());
     closing_.assign(static_cast<std::size_t>(m) * 4 * static_cast<std::size_t>(f), 0.0);
     for (const int end : {0, 1}) {
-        const ConstraintBasis& basis = nodes.basis(end == 0 ? 0 : layout.n_nodes() - 1);
+        const ConstraintBasis& basis = *bases[static_cast<std::size_t>(end)];
         DenseMatrix D(m, 2 * f);
         if (!ends_.is_phase()) D = missed_.derivatives(end == 1, points_[end], basis);
         for (int i = 0; ends_.is_phase() && end == 0 && i < m; ++i) D(i, i) = 1;

@@ -8,14 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "livens/spacetime/elements/window_layout.h"
 #include "livens/spacetime/march/end_point.h"
 #include "livens/spacetime/march/ends.h"
 
 namespace livens::inline spacetime_internal {
 
 class Elimination;
-class Nodes;
 
 /// What conditions by component miss at two ends of time.
 class MissedConditions {
@@ -47,9 +45,32 @@ private:
     std::vector<double> rows_;
 };
 
-/// An angle as nodes have it, node after node.
-double followed(const NamedCoordinate& coordinate, const std::vector<Matrix34>& stated,
-                const WindowLayout& layout, const Nodes& nodes, double from);
+/// Places at an end of time, 12 numbers a body, and the element there.
+struct EndPlaces {
+    double t = 0;
+    const double* X = nullptr;
+    const double* X_low = nullptr;   ///< null: zeros
+    double length = 0;               ///< of the element, s
+    /// What is told of momenta as velocities; empty: what joints allow them to be.
+    std::function<std::vector<Matrix34>(const std::vector<double>& momenta)> told{};
+};
+
+/// Where an angle is at the end that is `from` at the start, as configurations have it, one after the other.
+class FollowedAngle {
+public:
+    /// `coordinate` must outlive it; stated: where its joint counts from.
+    FollowedAngle(const NamedCoordinate& coordinate, std::span<const Matrix34> stated, double from)
+        : coordinate_(coordinate), stated_(stated), now_(from - coordinate.at_stated), X_(stated.size())
+    {}
+    void pass(const double* X);
+    double now() const { return coordinate_.at_stated + now_; }
+
+private:
+    const NamedCoordinate& coordinate_;
+    std::span<const Matrix34> stated_;
+    double now_;
+    std::vector<Matrix34> X_;
+};
 
 /// Border and closing rows of a window (docs/theory.md, "Conditions by component"). Unknowns are momenta
 /// along the free motions at the first node and at the last one, f each; rows what conditions miss. Of a
@@ -73,7 +94,11 @@ public:
     /// What others have kept.
     void adopt(const EndConditions& others) { current_ = kept_ = others.kept_; }
     /// States at both ends, and what conditions miss. False: something is not finite, or without a value.
-    bool evaluate(const WindowLayout& layout, const Nodes& nodes);
+    bool evaluate(const std::array<EndPlaces, 2>& ends, const MissedConditions::Followed& followed);
+    /// Of all bodies, where joints count from.
+    const std::vector<Matrix34>& stated() const { return stated_; }
+    /// What they miss, with the opposite sign.
+    const std::vector<double>& missed() const { return missed_.rows(); }
     /// Rows of the balances with what the conditions miss behind them, both with the opposite sign.
     std::vector<double> behind(std::vector<double> balances) const
     {
@@ -92,9 +117,12 @@ public:
     void border_with(std::function<DenseMatrix(Elimination&)> columns) { columns_ = std::move(columns); }
     DenseMatrix columns(Elimination& formed) const { return columns_ ? columns_(formed) : DenseMatrix(); }
 
-    /// Closing rows at the current point: unknowns of the first node, of the last, momenta.
-    void differentiate(const WindowLayout& layout, const Nodes& nodes);
+    /// Closing rows at the current point: unknowns of the first node, of the last, momenta; all by these free
+    /// motions at both ends.
+    void differentiate(const std::array<const ConstraintBasis*, 2>& bases);
     std::span<const double> closing() const { return closing_; }
+    /// Momenta of unit free motions, n_twists x f.
+    const DenseMatrix& along(bool last) const { return along_[last ? 1 : 0]; }
     /// Increments of momenta from those along the free motions where closing rows were made; numbers as they
     /// are.
     void to_momenta(const double* along, double* dp) const;
