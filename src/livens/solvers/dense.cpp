@@ -173,14 +173,14 @@ void OrthogonalBasis::resize(int n, int most)
     scratch_.assign(static_cast<std::size_t>(n), 0.0);
 }
 
-/// Brings the largest of the entries j.. of column j to place j.
-void OrthogonalBasis::lead(int j, bool keep)
+/// Brings the largest of the entries j..end - 1 of column j to place j; the others are zero.
+void OrthogonalBasis::lead(int j, bool keep, int end)
 {
     double* v = column(j);
     if (!keep) {
         int best = j;
         double largest = std::abs(v[j]);
-        for (int i = j + 1; i < n_; ++i) {
+        for (int i = j + 1; i < end; ++i) {
             if (!(std::abs(v[i]) > largest)) continue;
             best = i;
             largest = std::abs(v[i]);
@@ -190,20 +190,23 @@ void OrthogonalBasis::lead(int j, bool keep)
     std::swap(v[j], v[reflections_[j].lead]);
 }
 
-/// Makes the reflector of column j from its entries j.. and puts R_jj in place.
-void OrthogonalBasis::reflect(int j, bool keep_sign)
+/// Makes the reflector of column j from its entries j..behind - 1 and puts R_jj in place; the others are
+/// zero.
+void OrthogonalBasis::reflect(int j, bool keep_sign, int behind)
 {
     double* v = column(j);
     int* places = places_.data() + count(n_, j);
     int used = 0, end = j + 1;
     double tail = 0;
-    for (int i = j + 1; i < n_; ++i) {
+    for (int i = j + 1; i < behind; ++i) {
         if (v[i] == 0) continue;
         tail += v[i] * v[i];
         places[used++] = i;
         end = i + 1;
     }
     reflections_[j].end = end;
+    reflections_[j].reach = std::max(end, reflections_[j].lead + 1);
+    reflections_[j].all_reach = std::max(reflections_[j].reach, j > 0 ? reflections_[j - 1].all_reach : 0);
     reflections_[j].used = 2 * used <= end - j ? used : -1;
     const double head = v[j];
     const double length = std::sqrt(head * head + tail);
@@ -249,15 +252,42 @@ inline void OrthogonalBasis::reflect_only(int j, double* x) const
     for (int i = 0; i < used; ++i) x[places[i]] -= t * v[places[i]];
 }
 
+/// Column j by reflections 0..j - 1, of which those change nothing on whose rows it is zero: of a chain of
+/// bodies all but the last few. Entries from what is returned on are zero.
+int OrthogonalBasis::reflect_by_those_before(int j)
+{
+    double* x = column(j);
+    int first = 0, end = n_;   // what is not zero
+    while (end > 0 && x[end - 1] == 0) --end;
+    while (first < end && x[first] == 0) ++first;
+    // Up to which row the reflections 0..i reach together goes up with i.
+    int i = 0;
+    for (int above = j; i < above;) {
+        const int middle = (i + above) / 2;
+        if (reflections_[static_cast<std::size_t>(middle)].all_reach <= first)
+            i = middle + 1;
+        else
+            above = middle;
+    }
+    for (; i < j; ++i) {
+        const Reflection& one = reflections_[static_cast<std::size_t>(i)];
+        if (one.reach <= first || end <= i) continue;
+        reflect_column(i, x);
+        first = std::min(first, i + 1);   // row i is done with
+        end = std::max(end, one.reach);
+    }
+    return std::max(end, j + 1);
+}
+
 double OrthogonalBasis::factorise(int k, bool keep_choices)
 {
     k_ = k;
     double smallest = 1;
     for (int j = 0; j < k; ++j) {
         if (n_ >= large) Patience::ask();
-        for (int i = 0; i < j; ++i) reflect_column(i, column(j));
-        lead(j, keep_choices);
-        reflect(j, keep_choices);
+        const int end = reflect_by_those_before(j);
+        lead(j, keep_choices, end);
+        reflect(j, keep_choices, std::max(end, reflections_[static_cast<std::size_t>(j)].lead + 1));
         smallest = std::min(smallest, std::abs(column(j)[j]));
     }
     return smallest;
@@ -283,8 +313,8 @@ double OrthogonalBasis::factorise_pivoted(int k, std::span<int> order)
             std::swap(reflections_[j].norm, reflections_[best].norm);
             std::swap(order[j], order[best]);
         }
-        lead(j, false);
-        reflect(j, false);
+        lead(j, false, n_);
+        reflect(j, false, n_);
         smallest = std::min(smallest, std::abs(column(j)[j]));
         for (int c = j + 1; c < most_; ++c) {
             reflect_column(j, column(c));

@@ -80,8 +80,9 @@ public:
     void null_space(double* z) const;
 
 private:
-    void lead(int j, bool keep);
-    void reflect(int j, bool keep_sign);
+    void lead(int j, bool keep, int end);
+    void reflect(int j, bool keep_sign, int behind);
+    int reflect_by_those_before(int j);
     void reflect_column(int j, double* x) const;
     void reflect_only(int j, double* x) const;
     void reflect_rows(int j, double* z) const;
@@ -95,12 +96,14 @@ private:
     int k_ = 0;
     std::vector<double> g_;   // R above the diagonal, reflectors (first entry 1 implied) below
     struct Reflection {
-        double beta = 0;   // H_j = I - beta v v^T
-        double sign = 1;   // of R_jj
-        double norm = 0;   // of the column, squared, as far as it is not reduced
-        int lead = 0;      // row exchanged with row j before
-        int end = 0;       // entries from here on are zero
-        int used = -1;     // how many entries are not zero, if they are few; else -1
+        double beta = 0;     // H_j = I - beta v v^T
+        double sign = 1;     // of R_jj
+        double norm = 0;     // of the column, squared, as far as it is not reduced
+        int lead = 0;        // row exchanged with row j before
+        int end = 0;         // entries from here on are zero
+        int reach = 0;       // rows from here on it leaves alone, the exchange included
+        int all_reach = 0;   // likewise this one and all before it
+        int used = -1;       // how many entries are not zero, if they are few; else -1
     };
     std::vector<Reflection> reflections_;
     std::vector<int> places_;   // of their entries that are not zero, n a reflection

@@ -25,11 +25,19 @@ double ConstraintBasis::fill(const ModelTables& tables, int column, int row, Ins
     double* out = q.column(column);
     tables.rows.gradient(row, at, X, g);
     tables.scaled_gradient(row, X, maps, g, out);
+    // Sums go upwards, whichever body comes first in the joint.
+    const std::vector<int>& bodies = tables.rows[row].ascending;
+    const auto of_bodies = [&](const auto& act) {
+        for (const int body : bodies) {
+            const BodyTable& table = tables.bodies[body];
+            for (int i = table.first; i < table.first + table.dofs; ++i) act(out[i]);
+        }
+    };
     double sum = 0;
-    for (int i = 0; i < tables.n_twists; ++i) sum += out[i] * out[i];
+    of_bodies([&](double entry) { sum += entry * entry; });
     // A row without a gradient stays zero: its pivot then says that rank is lost.
     const double scale = sum > 0 ? 1 / std::sqrt(sum) : 1.0;
-    for (int i = 0; i < tables.n_twists; ++i) out[i] *= scale;
+    of_bodies([&](double& entry) { entry *= scale; });
     return scale;
 }
 
