@@ -186,7 +186,7 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
 }
 
 /// Unknown numbers: those of the problem itself, before any is looked for.
-void check_unknowns(const Problem& problem, const Time& time, const SolveOptions& options)
+void check_unknowns(const Problem& problem, const SolveOptions& options)
 {
     const Conditions& given = problem.conditions;
     const bool is_whole = given.at_start == Known::positions || given.at_end != Known::nothing;
@@ -196,8 +196,6 @@ void check_unknowns(const Problem& problem, const Time& time, const SolveOptions
                               std::string(what) + " is not solved for together with unknown numbers", "", "",
                               "", help});
     };
-    refuse(std::holds_alternative<Span>(time), "time.accuracy", "a motion to an accuracy",
-           "give elements instead of the accuracy");
     refuse(is_whole, "start.given", "a motion with places of all bodies at an end",
            "give its conditions by component, or the state at the start");
     refuse(options.roots > 1, "method.roots", "more than one motion", "leave roots out");
@@ -269,7 +267,7 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
         throw InputError({"no-bodies", "body", "a model needs at least one body", "", "", "", "add a body"});
     refuse_rotors(model, problem.conditions, method);
     refuse_special_rows(model, method);
-    check_unknowns(problem, time, options);
+    check_unknowns(problem, options);
     check_events(model, problem, time, method, options);
     if (!problem.conditions.has_components())
         check_conditions(model, problem.conditions, method);
