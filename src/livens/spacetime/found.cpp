@@ -61,6 +61,20 @@ std::shared_ptr<const Stated> stated_with(const std::shared_ptr<const Stated>& s
         Stated{rebuilt.model, std::move(problem), std::move(*tried.ends), std::move(span)});
 }
 
+NumberError error_of_numbers(const UnknownNumbers& stated, const FoundNumbers& found)
+{
+    NumberError worst;
+    for (std::size_t i = 0; i < found.errors.size(); ++i) {
+        const UnknownNumber& number = stated.numbers[i];
+        const double size = std::max(scale_of(number), std::abs(found.values[i]));
+        if (i < found.rounding.size()) worst.rounding = std::max(worst.rounding, found.rounding[i] / size);
+        if (!(found.errors[i] > worst.largest * size)) continue;
+        worst.largest = found.errors[i] / size;
+        worst.name = number.name;
+    }
+    return worst;
+}
+
 std::vector<double> held_outputs(const Stated& stated, double error)
 {
     if (stated.problem.unknowns.is_empty() || !std::isfinite(error)) return {};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/solve.h"
@@ -27,6 +28,15 @@ struct Stated {
 /// ends do not close. Without unknown numbers the same.
 std::shared_ptr<const Stated> stated_with(const std::shared_ptr<const Stated>& stated,
                                           const FoundNumbers& numbers, StartPolicy policy);
+
+/// Of unknown numbers the largest estimated error, by what each is compared with or itself if that is more.
+struct NumberError {
+    double largest = 0;
+    double rounding = 0;   ///< likewise of what rounding may move, whichever has most
+    std::string name{};    ///< whose the largest is
+};
+/// `stated`: with what was found.
+NumberError error_of_numbers(const UnknownNumbers& stated, const FoundNumbers& found);
 
 /// Output times that elements of the next motion end at, whatever becomes of instants that are found: those
 /// that stay apart from these if times are off by `error` of the duration.

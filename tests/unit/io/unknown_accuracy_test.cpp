@@ -251,6 +251,27 @@ TEST(UnknownsToAccuracy, TakeFewElements)
         }
 }
 
+/// A mass whose drag is weak hardly moves the pendulum: the place at the end is that of 1 kg, by a Taylor
+/// series in 30 digits.
+TEST(UnknownsToAccuracy, NumbersThatHardlyShowTakeShorterElements)
+{
+    std::string text = replaced(pendulum, "mass = 1", "mass = { unknown = 0.8, low = 0.3, high = 3 }");
+    text = replaced(text, "linear = 0.3", "linear = 0.001");
+    text = replaced(text, "\"L/2\"", "0.793524158562215731");
+    for (const char* accuracy : {"1e-5", "1e-7", "1e-9"}) {
+        const SolvedScenario s = solved(with_accuracy(text, accuracy));
+        expect_told(s, 1, std::stod(accuracy), 1e-11);
+        EXPECT_LE(30 * s.solution.estimate.largest, s.solution.numbers.errors.at(0)) << "it hardly shows";
+    }
+    const SolvedScenario s = solved(with_accuracy(text, "1e-12"));
+    EXPECT_EQ(s.solution.report.status, SolveStatus::inaccurate);
+    EXPECT_NE(s.solution.report.message.find("the error of the unknown 'bob.mass' is about"),
+              std::string::npos)
+        << s.solution.report.message;
+    EXPECT_NE(s.solution.report.message.find("rounding may move an unknown number by"), std::string::npos)
+        << s.solution.report.message;
+}
+
 /// What is told goes into the result, and comes back.
 TEST(UnknownsToAccuracy, ErrorsStandInTheRun)
 {

@@ -129,6 +129,14 @@ public:
         return "try " + std::to_string(solution.report.tries) + ", with " +
                std::to_string(solution.motion.n_elements()) + " elements" + why_;
     }
+    std::string error_in_words(const Model& model, const Solution& solution) const override
+    {
+        const NumberError worst = of_numbers(solution);
+        if (!(worst.largest > solution.estimate.largest))
+            return RepeatedMarch::error_in_words(model, solution);
+        return "the error of the unknown '" + worst.name + "' is about " + to_text(worst.largest, 3) +
+               " of its size";
+    }
     bool is_march() const override { return false; }
 
 private:
@@ -153,7 +161,8 @@ private:
         if (is_good) {
             solution.estimate = second.take(n);
             second.tell_numbers(solution.numbers);
-            count_rounding(model(), std::vector<double>(solution.motion.mesh.ends.size(), rounded(solution)),
+            const double rounding = rounding_share * solution.report.moved_by_rounding;
+            count_rounding(model(), std::vector<double>(solution.motion.mesh.ends.size(), rounding),
                            solution.motion.mesh, solution.estimate);
         } else if (second.report().status == SolveStatus::cancelled) {
             solution.report.status = SolveStatus::cancelled;
@@ -163,16 +172,22 @@ private:
         }
     }
 
-    /// Two solutions may agree by chance to less.
-    static double rounded(const Solution& solution)
+    NumberError of_numbers(const Solution& solution) const
     {
-        return rounding_share * solution.report.moved_by_rounding;
+        return error_of_numbers(found_of_->problem.unknowns, solution.numbers);
     }
 
-    static double error_of(const Solution& solution)
+    /// Two solutions may agree by chance to less.
+    double rounded(const Solution& solution) const
+    {
+        return rounding_share * std::max(solution.report.moved_by_rounding, of_numbers(solution).rounding);
+    }
+
+    /// Of the motion, or of a number by its size.
+    double error_of(const Solution& solution) const
     {
         const double error = solution.estimate.empty() ? infinite : solution.estimate.largest;
-        return std::isnan(error) ? infinite : error;
+        return std::isnan(error) ? infinite : std::max(error, of_numbers(solution).largest);
     }
 
     /// Whether a law bends elsewhere than elements end, by more than the motion goes in the accuracy. Both
@@ -341,9 +356,12 @@ private:
     {
         const LargestError& found = solution.estimate;
         std::string text = "; more of them help no more: ";
-        if (rounded(solution) > span().accuracy)
-            text += "rounding may move the motion by " + to_text(solution.report.moved_by_rounding, 3);
-        else if (found.unseen_load >= 0)
+        if (rounded(solution) > span().accuracy) {
+            const bool is_motion = rounding_share * solution.report.moved_by_rounding == rounded(solution);
+            text += "rounding may move " + std::string(is_motion ? "the motion" : "an unknown number") +
+                    " by " + to_text(rounded(solution) / rounding_share, 3) +
+                    (is_motion ? "" : " of its size");
+        } else if (found.unseen_load >= 0)
             text += "the law of load '" + model().loads()[static_cast<std::size_t>(found.unseen_load)].name +
                     "' changes too fast inside them";
         else
