@@ -80,6 +80,7 @@ public:
         : Asked{stated, stated, lobatto, options, lobatto.degree == 0}, stops_(stops_of(model(), span())),
           gap_(nearest_ends * duration())
     {
+        options_.meeting = std::max(options_.meeting, span().accuracy);
         if (is_degree_free_)
             lobatto_.degree = span().accuracy < high_accuracy ? high_degree : preferred_degree;
         const double times = times_of_motion(model(), stated->ends), wanted = times / first_length;
@@ -162,6 +163,7 @@ private:
             solution.estimate = second.take(n);
             second.tell_numbers(solution.numbers);
             const double rounding = rounding_share * solution.report.moved_by_rounding;
+            add_events(model(), solution.motion, solution.estimate);
             count_rounding(model(), std::vector<double>(solution.motion.mesh.ends.size(), rounding),
                            solution.motion.mesh, solution.estimate);
         } else if (second.report().status == SolveStatus::cancelled) {
