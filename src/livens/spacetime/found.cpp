@@ -11,7 +11,7 @@ namespace livens::inline spacetime_internal {
 
 namespace {
 
-constexpr double least_apart = 1e-3, safety = 10;   // of the duration; of what it is off by
+constexpr double least_apart = 1e-3, by_errors = 10;   // of the duration; of what it is off by
 
 /// As they are stated of this model, or those that are left of a time that ends elsewhere.
 std::vector<double> outputs(const Span& span, const Rebuilt& rebuilt)
@@ -82,7 +82,7 @@ std::vector<double> held_outputs(const Stated& stated, double error)
     std::vector<double> found = stated.model->load_breaks(), held;
     found.push_back(span.start);
     found.push_back(span.end);
-    const double apart = (least_apart + safety * error) * (span.end - span.start);
+    const double apart = (least_apart + by_errors * error) * (span.end - span.start);
     for (const double t : span.output) {
         const auto is_near = [&](double other) { return std::abs(t - other) <= apart; };
         if (t > span.start && t < span.end && std::ranges::none_of(found, is_near)) held.push_back(t);
