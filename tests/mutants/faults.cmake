@@ -1537,6 +1537,14 @@ livens_mutant(NAME bends_between_ends_are_believed
               TESTS_OF convergence
               MUST_FAIL AccuracyBetweenEnds.EndsElementsWhereLawsBend)
 
+# Moments of momentum are left out of what is known at an end.
+livens_mutant(NAME given_moments_are_forgotten
+              FILE spacetime/march/given_momenta.cpp
+              OLD [[sum += dot(cross(X[b].column(a), P.column(a)), rates[b]);]]
+              NEW [[sum += dot(cross(X[b].column(a), P.column(a)), 0 * rates[b]);]]
+              TESTS_OF convergence
+              MUST_FAIL MomentaBesideComponents.GiveTheMotionThatHasThem)
+
 # The second solution is taken to have the numbers of the first.
 livens_mutant(NAME numbers_have_no_error
               FILE spacetime/accuracy/estimate.cpp

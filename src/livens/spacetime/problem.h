@@ -47,6 +47,7 @@ struct Condition {
     At at = At::start;
     bool forgets_turns = false;       ///< alike at both ends but for whole turns
     std::optional<AxisTurn> turn{};   ///< of all bodies, which is taken back before the end is compared
+    bool is_of_all = false;           ///< one of those that momenta given of all bodies come to
 
     StateQuantity at_end() const
     {
@@ -60,8 +61,9 @@ struct Condition {
 /// positions or momenta at each. Stated values that are not known serve as a guess: V where positions are
 /// known, X where momenta are (zeros mean none).
 ///
-/// Or component by component: twice as many as the joints leave motions free, where positions that are known
-/// at an end without components are as many as that; states are else guesses, one without bodies is none.
+/// Or component by component: twice as many as the joints leave motions free, where positions or momenta that
+/// are known at an end without components are as many as that; states are else guesses, one without bodies is
+/// none.
 struct Conditions {
     State start;
     Known at_start = Known::state;
