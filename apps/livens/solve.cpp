@@ -107,10 +107,8 @@ struct Job {
 
     void detail(const std::string& what)
     {
-        if (is_alone)
-            say_detail(what);
-        else
-            details.push_back(what);
+        if (is_alone) return say_detail(what);
+        details.push_back(what);
     }
 };
 

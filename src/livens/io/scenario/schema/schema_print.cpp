@@ -223,8 +223,8 @@ the end of time can be unknown: `{ unknown = 0.3, low = 0 }` in place of the num
   does not pass other instants at which joints or loads switch.
 - Guess and bounds are numbers, strings with units, or expressions, as everywhere. Whole numbers and words
   cannot be unknown; a number inside of a formula can as a parameter: `A = { unknown = 2 }` in `[parameters]`.
-- What is found is a note of the result, with its estimated error. The scenario in the result has it as its guess, so that it is that of
-  the motion.
+- What is found is a note of the result, with its estimated error. The scenario in the result has it as its
+  guess, so that it is that of the motion.
 - `--set L=0.3` replaces the guess of an unknown parameter.
 
 ## Lists and limits
