@@ -107,10 +107,8 @@ struct Job {
 
     void detail(const std::string& what)
     {
-        if (is_alone)
-            say_detail(what);
-        else
-            details.push_back(what);
+        if (is_alone) return say_detail(what);
+        details.push_back(what);
     }
 };
 
@@ -172,6 +170,7 @@ std::string json_of(const Solved& solved, const Places& p, const std::vector<Dia
     write_figures(json, run);
     json.member("start", run.motion.start()).member("end", run.motion.end());
     if (solved.found != nullptr) write_found(json, *solved.found);
+    write_found_errors(json, run);
     json.member("output", p.output.string());
     json.key("csv");
     if (p.csv.empty())

@@ -174,6 +174,11 @@ class Solution(Series):
         return dict(self.options.get("found", {}))
 
     @property
+    def unknown_errors(self) -> dict[str, float]:
+        """Estimated errors of what was found of unknown numbers, by their names; nan: not known."""
+        return dict(self._result.unknown_errors)
+
+    @property
     def n_elements(self) -> int:
         """Number of time elements."""
         return len(self._result.t) - 1

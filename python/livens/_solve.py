@@ -50,8 +50,8 @@ def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, el
     Args:
         model: The model to solve; it is not changed.
         time: Final time, or (start, end), s.
-        accuracy: Permitted error of positions, in model lengths, and of orientations, in rad. The elements, and the
-            degree unless given, follow from it. Default: 1e-6.
+        accuracy: Permitted error of positions, in model lengths, of orientations, in rad, and of unknown numbers,
+            by their size. The elements, and the degree unless given, follow from it. Default: 1e-6.
         elements: Number of time elements of equal length, instead of ``accuracy``.
         output: Interval between output times, or an ascending list of them, s; they become element ends.
         breaks: Whether elements end where loads jump (``"from_loads"``, default) or not (``"ignore"``).

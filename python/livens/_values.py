@@ -124,7 +124,7 @@ def unknown(guess: Number, *, low: Number | None = None, high: Number | None = N
     """A number that is found with the motion, in place of a number of the model, a parameter or the end of time.
 
     Between conditions at both ends of time: :func:`solve` takes one more for each unknown number. What was found
-    is in ``sol.unknowns``.
+    is in ``sol.unknowns``, and how far it may be off in ``sol.unknown_errors``.
 
     Args:
         guess: Where to begin, in the unit of the key, or a string with a unit.

@@ -327,6 +327,14 @@ void add_results(nb::module_& m)
         .def_prop_ro("method", [](const Result& r) { return r.run.method; })
         .def_prop_ro("version", [](const Result& r) { return r.run.version; })
         .def_prop_ro("scenario_text", [](const Result& r) { return r.run.scenario_text; })
+        .def_prop_ro("unknown_errors",
+                     [](const Result& r) {
+                         std::map<std::string, double> all;
+                         const RunNumbers& numbers = r.run.numbers;
+                         for (std::size_t i = 0; i < numbers.names.size(); ++i)
+                             all[numbers.names[i]] = numbers.errors[i];
+                         return all;
+                     })
         .def_prop_ro("resolved", [](const Result& r) { return r.run.resolved; })
         .def_prop_ro("solve_seconds", [](const Result& r) { return r.solve_seconds; })
         .def_prop_ro("estimate_seconds", [](const Result& r) { return r.estimate_seconds; })

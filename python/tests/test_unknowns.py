@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -53,6 +54,20 @@ def test_damping_is_found_and_a_march_confirms_it() -> None:
     march = lv.solve(pendulum(c), 2, elements=40, method=lv.Lobatto(8))
     assert march["bob"].position[-1][2] == pytest.approx(there["bob.z"], abs=1e-9)
     assert 0.1 < c < 3
+
+
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-7, 1e-10])
+def test_an_accuracy_is_one_of_the_number_too(tmp_path: Path, accuracy: float) -> None:
+    """The damping that brings it to 30 degrees off the vertical after 2 s, by DOP853 and a root finder."""
+    begin = {"bob.y": 0, "bob.z": 0, "bob.vy": 0, "bob.vz": 0}
+    sol = lv.solve(pendulum(lv.unknown(0.3, low=0, high=3)), 2, accuracy=accuracy, start=begin, end={"bob.x": 0.5})
+    off, told = abs(sol.unknowns["air.linear"] - 0.763693631412843), sol.unknown_errors["air.linear"]
+    assert off <= accuracy
+    assert off / 3 <= told + 1e-14 and told <= 30 * max(off, 1e-14)
+    assert any(note.startswith("found: air.linear = 0.763") and ", within " in note for note in sol.notes)
+    sol.save(tmp_path / "found.nc")
+    assert lv.load_solution(tmp_path / "found.nc").unknown_errors == sol.unknown_errors
+    assert lv.solve(pendulum(0.3), 0.1).unknown_errors == {}
 
 
 def test_a_march_has_no_unknowns() -> None:

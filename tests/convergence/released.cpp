@@ -256,6 +256,70 @@ TEST(PhasesBetweenEnds, RatesAndAReleaseAreFoundTogether)
     expect_march_arrives(s, *s.numbers.rebuilt.model);
 }
 
+Solution to_accuracy(const Problem& problem, const Made& made, double accuracy)
+{
+    std::vector<double> guesses;
+    for (const UnknownNumber& number : problem.unknowns.numbers) guesses.push_back(number.guess);
+    const Sling s = made(guesses);
+    return solve(*model_of(s), problem, Span{0, s.end, accuracy}, Lobatto{0});
+}
+
+/// As it is asked for, and told neither too small nor much too large.
+void expect_told(const Solution& s, const std::vector<double>& truth, double accuracy)
+{
+    ASSERT_TRUE(s.report.converged()) << accuracy << ": " << s.report.message;
+    EXPECT_LE(s.estimate.largest, accuracy);
+    ASSERT_EQ(s.numbers.errors.size(), truth.size());
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        const double error = std::abs(s.numbers.values[i] - truth[i]), told = s.numbers.errors[i];
+        EXPECT_LE(error, accuracy);
+        EXPECT_GE(told + 1e-13, 0.3 * error) << accuracy;
+        EXPECT_LE(told, 30 * std::max(error, 1e-13)) << accuracy;
+    }
+}
+
+TEST(Releases, AreFoundToAnAccuracy)
+{
+    const Problem one = problem_of({{"until", 0.2, 0.02, 0.6}}, released, {{"stone.x", 9}}),
+                  two = problem_of({{"until", 0.15, 0.02, 0.6}, {"end", 0.9, 0.3, 2}}, released_for,
+                                   {{"stone.x", 8}, {"stone.z", 1}});
+    for (const double accuracy : {1e-3, 1e-5, 1e-7, 1e-9, 1e-11}) {
+        expect_told(to_accuracy(one, released, accuracy), {from_state}, accuracy);
+        expect_told(to_accuracy(two, released_for, accuracy), {at_ease, arrival}, accuracy);
+    }
+    // wind that ends stays where it is
+    const Made windy = [](std::span<const double> v) {
+        Sling s{v[0]};
+        s.wind_until = 0.4;
+        return s;
+    };
+    const Solution s =
+        to_accuracy(problem_of({{"until", 0.2, 0.02, 0.6}}, windy, {{"stone.x", 9}}), windy, 1e-9);
+    expect_told(s, {0.266637635923708}, 1e-9);
+    EXPECT_EQ(std::ranges::count(s.motion.mesh.ends, 0.4), 1);
+    EXPECT_EQ(std::ranges::count(s.motion.mesh.ends, s.numbers.values[0]), 1);
+}
+
+/// Rates at the start against those that DOP853 threw with.
+TEST(PhasesBetweenEnds, AreSolvedToAnAccuracy)
+{
+    for (const double accuracy : {1e-4, 1e-7, 1e-10}) {
+        const Made made = [=](std::span<const double>) { return thrown_about(0.9); };
+        const Solution s = to_accuracy(problem_of({}, made, aimed(), Known::positions), made, accuracy);
+        expect_told(s, {}, accuracy);
+        const Solution march = solve(*model_of(thrown_about(1)), {model_of(thrown_about(1))->start()},
+                                     s.motion.mesh, Lobatto{14});
+        ASSERT_EQ(march.motion.n_elements(), s.motion.n_elements());
+        const double length = model_of(thrown_about(1))->length();
+        double error = 0;
+        for (int e = 0; e <= s.motion.n_elements(); ++e)
+            error = std::max(error, distance(s.motion.at_end(e), march.motion.at_end(e)).X / length);
+        EXPECT_LE(error, accuracy);
+        EXPECT_LE(0.3 * error, s.estimate.largest + 1e-12) << accuracy;
+        EXPECT_NEAR(s.motion.at_end(0).V[0](2, 0), 9, 1e2 * accuracy + 1e-9);
+    }
+}
+
 std::string refused(const Problem& problem, const Made& made, const Method& method = Lobatto{8, 0})
 {
     try {
@@ -319,6 +383,9 @@ TEST(PhasesBetweenEnds, AJointThatFindsItsBodiesTakesHoldOfThem)
         solve(*first.model, problem, make_time_mesh(0, 1, 10, first.model->load_breaks()), Lobatto{4, 0});
     ASSERT_TRUE(s.report.converged()) << s.report.message;
     EXPECT_NEAR(s.numbers.values[0], 0.7, 1e-13);
+    const Solution found = solve(*first.model, problem, Span{0, 1, 1e-9}, Lobatto{0});
+    ASSERT_TRUE(found.report.converged()) << found.report.message;
+    EXPECT_NEAR(found.numbers.values[0], 0.7, 1e-9);
 }
 
 /// What the rod takes at its beginning, a rate along it, can be anything before: no end tells it.

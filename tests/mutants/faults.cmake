@@ -1508,8 +1508,8 @@ livens_mutant(NAME given_places_have_no_error
 # What rounding may move is not compared: motions that the conditions leave free are told as known.
 livens_mutant(NAME free_motions_are_taken
               FILE spacetime/solve_mesh.cpp
-              OLD [[if (found.size <= undetermined) return found.moved;]]
-              NEW [[if (found.size <= 1e300) return found.moved;]]
+              OLD [[if (found.size <= undetermined) return found;]]
+              NEW [[if (found.size <= 1e300) return found;]]
               TESTS_OF convergence
               MUST_FAIL LobattoEnds.ConjugateTimesOfAPendulumAreSingular)
 
@@ -1524,18 +1524,58 @@ livens_mutant(NAME elements_between_ends_are_even
 # Two solutions that agree by chance are believed to any digit.
 livens_mutant(NAME rounding_between_ends_is_forgotten
               FILE spacetime/accuracy/between_ends.cpp
-              OLD [[return rounding_share * solution.report.moved_by_rounding;]]
-              NEW [[return 0 * solution.report.moved_by_rounding;]]
+              OLD [[return rounding_share * std::max(solution.report.moved_by_rounding, of_numbers(solution).rounding);]]
+              NEW [[return 0 * std::max(solution.report.moved_by_rounding, of_numbers(solution).rounding);]]
               TESTS_OF convergence
               MUST_FAIL AccuracyBetweenEnds.IsGivenUpWhereRoundingIsMore)
 
 # Element ends beside the bends of a law are taken for them: both solutions have the same error.
 livens_mutant(NAME bends_between_ends_are_believed
               FILE spacetime/accuracy/between_ends.cpp
-              OLD [[const bool is_good = has_stops_ && !is_bent && error <= span_.accuracy;]]
-              NEW [[const bool is_good = has_stops_ && error <= span_.accuracy;]]
+              OLD [[const bool is_good = has_stops_ && !is_off && error <= span().accuracy;]]
+              NEW [[const bool is_good = has_stops_ && error <= span().accuracy;]]
               TESTS_OF convergence
               MUST_FAIL AccuracyBetweenEnds.EndsElementsWhereLawsBend)
+
+# Moments of momentum are left out of what is known at an end.
+livens_mutant(NAME given_moments_are_forgotten
+              FILE spacetime/march/given_momenta.cpp
+              OLD [[sum += dot(cross(X[b].column(a), P.column(a)), rates[b]);]]
+              NEW [[sum += dot(cross(X[b].column(a), P.column(a)), 0 * rates[b]);]]
+              TESTS_OF convergence
+              MUST_FAIL MomentaBesideComponents.GiveTheMotionThatHasThem)
+
+# The second solution is taken to have the numbers of the first.
+livens_mutant(NAME numbers_have_no_error
+              FILE spacetime/accuracy/estimate.cpp
+              OLD [[std::max(std::abs(numbers_[i] - first.values[i]), rounding)]]
+              NEW [[std::max(0 * std::abs(numbers_[i] - first.values[i]), rounding)]]
+              TESTS_OF unit_io
+              MUST_FAIL UnknownsToAccuracy.ErrorsAreToldOfGivenElements)
+
+# An accuracy is one of the motion alone, however little it says of a number.
+livens_mutant(NAME numbers_are_not_asked
+              FILE spacetime/accuracy/between_ends.cpp
+              OLD [[std::isnan(error) ? infinite : std::max(error, of_numbers(solution).largest)]]
+              NEW [[std::isnan(error) ? infinite : std::max(error, 0 * of_numbers(solution).largest)]]
+              TESTS_OF unit_io
+              MUST_FAIL UnknownsToAccuracy.NumbersThatHardlyShowTakeShorterElements)
+
+# Element ends at output times go with a duration that is found.
+livens_mutant(NAME output_times_are_moved
+              FILE spacetime/found.cpp
+              OLD [[if (t > span.start && t < span.end && std::ranges::none_of(found, is_near)) held.push_back(t);]]
+              NEW [[if (t > span.end && std::ranges::none_of(found, is_near)) held.push_back(t);]]
+              TESTS_OF unit_io
+              MUST_FAIL UnknownsToAccuracy.OutputTimesAreElementEnds)
+
+# What comes out as zero is compared with itself.
+livens_mutant(NAME found_zeros_have_no_size
+              FILE spacetime/found.cpp
+              OLD [[one.scale = scale_of(one);]]
+              NEW [[one.scale = 0 * scale_of(one);]]
+              TESTS_OF unit_io
+              MUST_FAIL UnknownsToAccuracy.MayComeOutAsZero)
 
 # The momentum at the end of time enters the balances as that at the start does.
 livens_mutant(NAME border_sign

@@ -32,16 +32,23 @@ struct PartNames {
     std::vector<std::string> row_labels;   ///< "elbow: x"
 };
 
+/// What was found of unknown numbers, in SI units.
+struct RunNumbers {
+    std::vector<std::string> names;
+    std::vector<double> values, errors;   ///< estimated; nan: not known
+};
+
 /// A run as it stands in the file: everything but the model, which is made again from the scenario text.
 struct Run : PartNames {
     std::string scenario_text;
     std::string meshes;   ///< Scenario::meshes
     std::string title;
-    std::string resolved;                  ///< options after defaults, JSON
-    std::vector<double> output;            ///< output times
-    std::string method;                    ///< name_of() the method
+    std::string resolved;         ///< options after defaults, JSON
+    std::vector<double> output;   ///< output times
+    std::string method;           ///< name_of() the method
     Motion motion;
     SolveReport report;
+    RunNumbers numbers;
     Verdict verdict;   ///< from a file without reasons, remarks and violations
     ErrorEstimate estimate;
     std::vector<double> growth;       ///< Solution::growth, nan where the neighbouring motion did not come
@@ -75,6 +82,9 @@ void check_model(const Model& model, const Run& run);
 
 /// The figures of report, verdict and motion as members of an object, named as in the file; null: not known.
 void write_figures(JsonWriter& json, const Run& run);
+
+/// Estimated errors of its unknown numbers, if it has some, as "found_errors"; null: not known.
+void write_found_errors(JsonWriter& json, const Run& run);
 
 /// Throws IoError now if `file` could not be written: the folder is missing, it is a directory, no
 /// permission, a device or a pipe. A temporary file is made there and removed again, to be sure. Call before

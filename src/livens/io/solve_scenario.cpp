@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "livens/base/error.h"
@@ -24,12 +25,30 @@ void take_found(std::shared_ptr<const Scenario> found, SolvedScenario& solved)
         throw InputError({"internal", "",
                           "this should not happen: the numbers that were found make no scenario", "", "", "",
                           ""});
-    solved.problem.conditions = found->conditions;
-    solved.problem.unknowns = found->unknowns;
-    solved.problem.prepared = found->prepared;
-    for (const UnknownNumber& one : found->unknowns.numbers)
-        solved.solution.report.notes.push_back("found: " + one.name + " = " + to_text(one.guess, 15));
+    Problem& problem = solved.problem;
+    const std::vector<UnknownNumber> before = std::exchange(problem.unknowns, found->unknowns).numbers;
+    for (std::size_t i = 0; i < before.size(); ++i)
+        problem.unknowns.numbers[i].scale = scale_of(before[i]);   // as it was solved
+    problem.conditions = found->conditions;
+    problem.prepared = found->prepared;
     solved.found = std::move(found);
+}
+
+/// "found: length = 1.113745597915 m, within 3e-12"; or what the last iterate had.
+void tell_found(SolvedScenario& solved)
+{
+    Solution& solution = solved.solution;
+    const std::vector<UnknownNumber>& all = solved.found->unknowns.numbers;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const SolveReport& report = solution.report;
+        const bool is_found = report.reached_end() || report.status == SolveStatus::inaccurate;
+        std::string text = (is_found ? "found: " : "not found, and in the last iterate: ") + all[i].name +
+                           " = " + to_text(all[i].guess, 15);
+        if (!all[i].unit.empty()) text += " " + all[i].unit;
+        if (is_found && i < solution.numbers.errors.size())
+            text += ", within " + to_text(solution.numbers.errors[i], 2);
+        solution.report.notes.push_back(std::move(text));
+    }
 }
 
 }   // namespace
@@ -51,6 +70,7 @@ SolvedScenario solve_scenario(const Scenario& scenario, SolveOptions options,
     estimate(now.model, solved.problem, now.method, options, solved.solution);
     for (Solution& root : solved.solution.roots)
         estimate(now.model, solved.problem, now.method, options, root);
+    if (solved.found != nullptr) tell_found(solved);
     return solved;
 }
 
@@ -85,6 +105,18 @@ void tell_limits(const Scenario& scenario, Run& run)
     }
 }
 
+RunNumbers numbers_of(const UnknownNumbers& found, std::vector<double> errors)
+{
+    RunNumbers all;
+    for (const UnknownNumber& one : found.numbers) {
+        all.names.push_back(one.name);
+        all.values.push_back(one.guess);
+    }
+    all.errors = std::move(errors);
+    all.errors.resize(all.names.size(), std::nan(""));
+    return all;
+}
+
 }   // namespace
 
 std::vector<Run> judged_roots(const Scenario& scenario, SolvedScenario& solved,
@@ -103,7 +135,10 @@ Run judged_run(const Scenario& given, SolvedScenario&& solved, const std::functi
     Solution& solution = solved.solution;
     judge(scenario.model, solved.problem, scenario.options, solution, goes_on);
     const Method method = solution.method;
+    RunNumbers numbers;
+    if (found != nullptr) numbers = numbers_of(found->unknowns, std::move(solution.numbers.errors));
     Run run = make_run(scenario.model, std::move(solution), method);
+    run.numbers = std::move(numbers);
     run.scenario_text = scenario.text;
     run.meshes = scenario.meshes;
     run.title = scenario.title;

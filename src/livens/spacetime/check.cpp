@@ -157,12 +157,11 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
                               "conditions by component stand beside what is given for all bodies at this end",
                               "", "one of the two", "",
                               "leave " + end + ".given away, or " + end + ".known"});
-        if (known == Known::momenta)
+        if (known == Known::momenta && given.is_periodic)
             throw InputError({"boundary-conditions", end + ".given",
-                              "momenta of all bodies stand beside conditions by component", "momenta",
+                              "momenta of all bodies are given of a periodic motion", "momenta",
                               "positions, state or nothing",
-                              "of six momenta a body joints leave only as many to choose as bodies are free, "
-                              "which depends on places that are not known",
+                              "both ends are alike, so that each condition says something of both",
                               "give rates by component in " + end + ".known"});
     }
     const auto refuse = [](const char* path, const std::string& what, const std::string& why,
@@ -198,19 +197,18 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
 }
 
 /// Unknown numbers: those of the problem itself, before any is looked for.
-void check_unknowns(const Problem& problem, const Time& time, const SolveOptions& options)
+void check_unknowns(const Problem& problem, const SolveOptions& options)
 {
     const Conditions& given = problem.conditions;
-    const bool is_whole = given.at_start == Known::positions || given.at_end != Known::nothing;
+    const bool is_whole = (given.at_start != Known::nothing && given.at_start != Known::state) ||
+                          given.at_end != Known::nothing;
     const auto refuse = [&](bool is_wrong, const char* path, const char* what, const char* help) {
         if (is_wrong && !problem.unknowns.is_empty() && given.has_components())
             throw InputError({"conditions-method", path,
                               std::string(what) + " is not solved for together with unknown numbers", "", "",
                               "", help});
     };
-    refuse(std::holds_alternative<Span>(time), "time.accuracy", "a motion to an accuracy",
-           "give elements instead of the accuracy");
-    refuse(is_whole, "start.given", "a motion with places of all bodies at an end",
+    refuse(is_whole, "start.given", "a motion with places or momenta of all bodies at an end",
            "give its conditions by component, or the state at the start");
     refuse(options.roots > 1, "method.roots", "more than one motion", "leave roots out");
     for (const UnknownNumber& number : problem.unknowns.numbers) {
@@ -281,7 +279,7 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
         throw InputError({"no-bodies", "body", "a model needs at least one body", "", "", "", "add a body"});
     refuse_rotors(model, problem.conditions, method);
     refuse_special_rows(model, method);
-    check_unknowns(problem, time, options);
+    check_unknowns(problem, options);
     check_events(model, problem, time, method, options);
     if (!problem.conditions.has_components())
         check_conditions(model, problem.conditions, method);

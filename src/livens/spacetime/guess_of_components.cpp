@@ -25,6 +25,8 @@ Ends ends_for_guesses(const Model& model, const Ends& ends, std::span<const doub
         };
         if (std::ranges::count_if(ends.components, is_place) >= tables.freedoms()) *known = Known::positions;
     }
+    if (ends.whole[0] == Known::momenta) guessed.at_start = Known::momenta;
+    if (ends.whole[1] == Known::momenta) guessed.at_end = Known::momenta;
     guessed.components.clear();
     return guessed;
 }

@@ -55,7 +55,10 @@ std::unique_ptr<Window> find_met(const Model& model, const Ends& ends, FoundNumb
                                  SolveReport& report)
 {
     constexpr int most = 8;
-    const bool has_momenta = knows_momenta(ends.at_start) || knows_momenta(ends.at_end);
+    const auto has_of = [&](std::size_t end, Known known) {
+        return knows_momenta(known) || ends.whole[end] == Known::momenta;
+    };
+    const bool has_momenta = has_of(0, ends.at_start) || has_of(1, ends.at_end);
     const auto is_met = [&](Window& of) {
         const Motion* motion = of.monitor().so_far();
         return motion == nullptr ||

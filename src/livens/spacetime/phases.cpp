@@ -164,9 +164,8 @@ private:
 
 namespace {
 
-/// Between conditions at both ends all phases are solved at once, by lobatto, on elements that are given.
-void check_between_ends(const Problem& problem, const Time& time, const Method& method,
-                        const SolveOptions& options)
+/// Between conditions at both ends all phases are solved at once, by lobatto.
+void check_between_ends(const Problem& problem, const Method& method, const SolveOptions& options)
 {
     const Conditions& given = problem.conditions;
     const auto refuse = [](bool is_wrong, const char* path, const std::string& value, const char* why,
@@ -191,8 +190,6 @@ void check_between_ends(const Problem& problem, const Time& time, const Method& 
            "give positions, or rates by component");
     refuse(given.is_periodic, "time.periodic", "true", "its end has other joints than its start",
            "give conditions at the start and at the end");
-    refuse(std::holds_alternative<Span>(time), "time.accuracy", "",
-           "elements for an accuracy are found from a state at the start", "give elements instead");
     refuse(options.roots > 1, "method.roots", std::to_string(options.roots),
            "one motion is looked for over phases", "leave roots out");
 }
@@ -205,7 +202,7 @@ void check_events(const Model& model, const Problem& problem, const Time& time, 
     if (!model.has_events()) return;
     const Conditions& given = problem.conditions;
     const bool is_march = !given.has_components() && given.at_start == Known::state;
-    if (!is_march || !is_nodal(method)) check_between_ends(problem, time, method, options);
+    if (!is_march || !is_nodal(method)) check_between_ends(problem, method, options);
     const auto* mesh = std::get_if<TimeMesh>(&time);
     if (mesh == nullptr) return;
     const std::vector<double> late = missed(*mesh, events_inside(model, mesh->start(), mesh->end()));

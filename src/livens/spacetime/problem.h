@@ -45,8 +45,9 @@ struct Condition {
     StateQuantity quantity;
     double value = 0;
     At at = At::start;
-    bool forgets_turns = false;   ///< alike at both ends but for whole turns
+    bool forgets_turns = false;       ///< alike at both ends but for whole turns
     std::optional<AxisTurn> turn{};   ///< of all bodies, which is taken back before the end is compared
+    bool is_of_all = false;           ///< one of those that momenta given of all bodies come to
 
     StateQuantity at_end() const
     {
@@ -60,8 +61,9 @@ struct Condition {
 /// positions or momenta at each. Stated values that are not known serve as a guess: V where positions are
 /// known, X where momenta are (zeros mean none).
 ///
-/// Or component by component: twice as many as the joints leave motions free, where positions that are known
-/// at an end without components are as many as that; states are else guesses, one without bodies is none.
+/// Or component by component: twice as many as the joints leave motions free, where positions or momenta that
+/// are known at an end without components are as many as that; states are else guesses, one without bodies is
+/// none.
 struct Conditions {
     State start;
     Known at_start = Known::state;
@@ -89,7 +91,13 @@ struct UnknownNumber {
     double guess = 0;
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
+    /// What it is compared with; 0: its guess, or where that is zero the width between its bounds, or one.
+    double scale = 0;
+    std::string unit{};   ///< "m", where it is told with one
 };
+
+/// What a number is compared with.
+double scale_of(const UnknownNumber& number);
 
 /// What is solved where unknown numbers have some values.
 struct Rebuilt {
@@ -98,7 +106,8 @@ struct Rebuilt {
     double start = 0, end = 0;           ///< s
     /// At the start, where it is known as a whole; without bodies it is that of the problem.
     State state{};
-    double turn = 0;   ///< rad, of Conditions::turn
+    double turn = 0;                ///< rad, of Conditions::turn
+    std::vector<double> output{};   ///< s, in ascending order; empty: those of the problem's time
 };
 
 /// As many more conditions by component decide them. Bodies, rows and loads are the same for all values.
@@ -106,6 +115,9 @@ struct UnknownNumbers {
     std::vector<UnknownNumber> numbers{};
     /// Throws InputError for values that make no model. The problem itself is that of the guesses.
     std::function<Rebuilt(std::span<const double> values)> rebuild{};
+    /// Element ends that stay where they are, whatever numbers do to the ends of time and to switches: s, in
+    /// ascending order, inside the time and apart from these.
+    std::vector<double> held{};
 
     bool is_empty() const { return numbers.empty(); }
 };
@@ -116,6 +128,9 @@ struct FoundNumbers {
     std::vector<double> values{};
     Rebuilt rebuilt{};
     std::vector<double> unfolded{};   ///< 0 where what every motion keeps is kept, see Ends::unfolding
+    /// Estimated, of the values: what those of the second solution differ by, and rounding. Empty: not known.
+    std::vector<double> errors{};
+    std::vector<double> rounding{};   ///< what of that is rounding; empty: nobody asked
 };
 
 struct Problem {

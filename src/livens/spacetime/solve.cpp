@@ -19,6 +19,7 @@
 #include "livens/dynamics/start/singular.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/accuracy/accuracy.h"
+#include "livens/spacetime/found.h"
 #include "livens/spacetime/phases.h"
 #include "livens/spacetime/roots.h"
 #include "livens/spacetime/rotating.h"
@@ -81,25 +82,6 @@ Solution solve_all_time(const Model& model, const Problem& problem, const Time& 
                : solve_phase(model, problem, time, method, options);
 }
 
-/// The model that the motion belongs to.
-const Model& solved(const Model& model, const Solution& solution)
-{
-    return solution.numbers.rebuilt.model != nullptr ? *solution.numbers.rebuilt.model : model;
-}
-
-/// The problem that begins where unknown numbers were found.
-Problem with_found(const Problem& problem, const Solution& solution)
-{
-    if (solution.numbers.rebuilt.model == nullptr) return problem;
-    Problem found = problem;
-    found.prepared = nullptr;
-    found.conditions.components = solution.numbers.rebuilt.components;
-    if (found.conditions.turn) found.conditions.turn->angle = solution.numbers.rebuilt.turn;
-    for (std::size_t i = 0; i < solution.numbers.values.size(); ++i)
-        found.unknowns.numbers[i].guess = solution.numbers.values[i];
-    return with_prepared(found);
-}
-
 /// Over events growth is known when all else is.
 void refuse_rounding(const Model& model, Solution& solution)
 {
@@ -144,7 +126,7 @@ Solution spacetime_internal::solve_unjudged(const Model& model, const Problem& s
         solution.report.message = "stopped as asked before the first element was solved";
         return solution;
     }
-    if (!solution.motion.mesh.ends.empty()) lower_orders(solved(model, solution), solution.motion);
+    if (!solution.motion.mesh.ends.empty()) lower_orders(found_model(model, solution), solution.motion);
     return solution;
 }
 
@@ -173,8 +155,8 @@ Solution solve(const Model& model, const Problem& stated, const Time& time, cons
             "; the last iterate is kept, which does not meet the equations but may serve as a guess";
     if (!options.judge || solution.motion.mesh.ends.empty()) return solution;
     // The estimate comes first: whether rounding spoils the accuracy, and what is suspect, follow from it.
-    const Model& found = solved(model, solution);
-    const Problem judged = with_found(problem, solution);
+    const Model& found = found_model(model, solution);
+    const Problem judged = with_found(problem, solution.numbers);
     estimate(found, judged, method, options, solution);
     refuse_rounding(found, solution);
     std::function<bool()> goes_on;
@@ -185,8 +167,8 @@ Solution solve(const Model& model, const Problem& stated, const Time& time, cons
         };
     judge(found, judged, options, solution, goes_on);
     for (Solution& root : solution.roots) {
-        estimate(solved(model, root), with_found(problem, root), method, options, root);
-        judge(solved(model, root), with_found(problem, root), options, root, goes_on);
+        estimate(found_model(model, root), with_found(problem, root.numbers), method, options, root);
+        judge(found_model(model, root), with_found(problem, root.numbers), options, root, goes_on);
     }
     return solution;
 }

@@ -124,28 +124,37 @@ private:
 };
 
 /// Conditions at both ends may leave a motion free, at conjugate and focal times: then the solution is one of
-/// many, and its digits are made of rounding. How far rounding may move it, in lengths and rad.
-double refuse_undetermined(Window& window, ConditionNumbersOfLast& last, SolveReport& report)
+/// many, and its digits are made of rounding. How far rounding may move it.
+Uncertainty refuse_undetermined(Window& window, ConditionNumbersOfLast& last, SolveReport& report)
 {
     Uncertainty found;
     last.measure(report, [&](const auto&) { found = window.uncertainty(); });
-    if (last.is_stopped()) return 0;
+    if (last.is_stopped()) return {};
     if (last.has_no_memory()) {
         report.status = SolveStatus::suspect;
         report.message =
             "memory ended before it was found whether the conditions at the two ends determine the motion";
-        return 0;
+        return {};
     }
     // Inequality: what rounding may move <= 1e-4 of the motion, else the conditions do not determine it
     // (theory.md, "Windows").
-    if (found.size <= undetermined) return found.moved;
+    if (found.size <= undetermined) return found;
     report.status = SolveStatus::singular;
     report.message = "the conditions at the two ends of time do not determine the motion: rounding alone may "
                      "move it by " +
                      to_text(found.size, 3) + " of itself, most of all " + found.name +
                      "; a neighbouring motion satisfies them as well, as at conjugate and focal times; try: "
                      "another duration, or the state at one end";
-    return found.moved;
+    return found;
+}
+
+/// What rounding may move, if all of it went the worst way.
+void take_rounding(const NumberedProblem& numbered, const Uncertainty& found, Solution& solution)
+{
+    solution.report.moved_by_rounding = found.moved;
+    if (found.numbers.empty()) return;
+    for (int i = 0; i < numbered.n_stated(); ++i)
+        solution.numbers.rounding.push_back(found.numbers[i] * numbered.scale(i));
 }
 
 /// Of the elements of the paper by nodal ones about their motion: it is the conditions that are asked, and a
@@ -161,7 +170,7 @@ void refuse_undetermined(const Model& model, const Ends& ends, const Method& met
     const bool is_formed = nodal.open(0, motion.n_elements(), report) &&
                            nodal.start_from([&](double t) { return motion.at(t); }) &&
                            nodal.equations().residual() && nodal.equations().factorise();
-    if (is_formed) report.moved_by_rounding = refuse_undetermined(nodal, last, report);
+    if (is_formed) report.moved_by_rounding = refuse_undetermined(nodal, last, report).moved;
 }
 
 /// The equations of a march as those of one window, at its motion: of all elements, or of radau the last one.
@@ -291,7 +300,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     ConditionNumbersOfLast last(options, mesh, w.direction > 0 ? mesh.end() : mesh.start());
     const bool is_asked = !ends.has_state() && problem.is_determination_asked;
     if (is_asked && !is_mixed && report.converged())
-        solution.report.moved_by_rounding = refuse_undetermined(*window, last, report);
+        take_rounding(numbered, refuse_undetermined(*window, last, report), solution);
     if (!report.converged() && report.status != SolveStatus::cancelled)
         solution.cannot_begin = why_unseen(numbered);
     finish(tables, *window, ends, method, options.condition, last, solution);

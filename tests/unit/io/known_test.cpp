@@ -148,12 +148,49 @@ TEST(KnownComponents, StandBesideWhatIsGivenAtTheOtherEnd)
     EXPECT_EQ(s.motion.at_end(0).X[0](0, 0), 0.5);
     EXPECT_NEAR(s.motion.at_end(12).V[1](0, 0), 1, 1e-12);
     // at one end it is one or the other
-    for (const std::string& wrong : {given + "\n[start.known]\n\"pivot.angle\" = 0\n\n" + at_end,
-                                     "\n[start]\ngiven = \"momenta\"\n\n" + at_end}) {
-        const ScenarioResult refused = read(with(wrong));
+    for (const std::string known : {"positions", "momenta"}) {
+        const std::string wrong =
+            "\n[start]\ngiven = \"" + known + "\"\n[start.known]\n\"pivot.angle\" = 0\n\n";
+        const ScenarioResult refused = read(with(wrong + at_end));
         EXPECT_FALSE(refused.scenario.has_value());
         EXPECT_NE(find(refused, "boundary-conditions"), nullptr) << shown(refused);
     }
+}
+
+/// Momenta of all bodies at the end, of the motion that components alone make.
+TEST(KnownComponents, StandBesideMomentaOfAllBodies)
+{
+    const std::string text = R"(format = 1
+gravity = [0, 0, -9.81]
+[time]
+end = 0.3
+elements = 10
+[method]
+family = "lobatto"
+degree = 8
+[[body]]
+name = "bob"
+shape = { point = true }
+mass = 2
+position = [1, 0, 0]
+[body.end]
+position = [1, 0, -0.44145]
+velocity = [3, 0, 1.057]
+[start.known]
+"bob.position" = [0, 0, 0]
+[end]
+given = "momenta"
+)";
+    const ScenarioResult result = read(text);
+    ASSERT_TRUE(result.scenario.has_value()) << shown(result);
+    const Scenario& scenario = *result.scenario;
+    EXPECT_EQ(scenario.conditions.at_end, Known::momenta);
+    const Solution s = solve(scenario.model, {scenario.conditions}, scenario.time, scenario.method);
+    ASSERT_TRUE(s.report.converged()) << s.report.message;
+    EXPECT_NEAR(s.motion.at_end(0).V[0](0, 0), 3, 1e-12);
+    EXPECT_NEAR(s.motion.at_end(0).V[0](2, 0), 4, 1e-12);
+    EXPECT_NEAR(s.motion.at_end(10).X[0](0, 0), 0.9, 1e-12);
+    EXPECT_NEAR(s.motion.at_end(10).X[0](2, 0), 0.75855, 1e-12);
 }
 
 TEST(KnownComponents, AreSpeedsAndEnergies)

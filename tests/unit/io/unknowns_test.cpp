@@ -253,7 +253,6 @@ TEST(UnknownsOfFiles, ThatAreWrongAreRefusedWhereTheyStand)
         {"low = 0 }", "low = \"1 m\" }", "unit"},
         {"elements = 20", "elements = { unknown = 20 }", "unknown-place"},
         {"type = \"spring\"", "type = { unknown = 3 }", "unknown-place"},
-        {"elements = 20", "accuracy = 1e-6", "conditions-method"},
         {"family = \"lobatto\"", "family = \"radau\"", "conditions-method"},
         {"end = 2", "end = { unknown = 2 }", "conditions-too-few"},
     };

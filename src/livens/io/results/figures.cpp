@@ -196,4 +196,14 @@ void write_figures(JsonWriter& json, const Run& run)
     }
 }
 
+void write_found_errors(JsonWriter& json, const Run& run)
+{
+    const RunNumbers& numbers = run.numbers;
+    if (numbers.names.empty()) return;
+    json.key("found_errors").begin_object();
+    for (std::size_t i = 0; i < numbers.names.size(); ++i)
+        json.member(numbers.names[i], i < numbers.errors.size() ? numbers.errors[i] : std::nan(""));
+    json.end_object();
+}
+
 }   // namespace livens

@@ -71,6 +71,12 @@ void visit_head(Archive& archive, AnyRun& run)
     archive.names("body", "names of the bodies", run.body_names);
     archive.names("joint", "names of the joints", run.joint_names);
     archive.names("note", "remarks on the run", run.notes);
+    archive.names("number", "unknown numbers that were found", run.numbers.names);
+    archive.list({"number_value", {"number"}, "mixed", "none", "what was found, in SI units"},
+                 run.numbers.values);
+    archive.list(
+        {"number_error", {"number"}, "mixed", "none", "estimated, of what was found; nan: not known"},
+        run.numbers.errors);
     archive.text("options", "all options after defaults, JSON", run.resolved);
 }
 

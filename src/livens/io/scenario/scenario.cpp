@@ -122,8 +122,12 @@ public:
         }
         State start = assembly.builder().model().start();
         return {std::make_shared<const Model>(std::move(assembly.builder().model())),
-                scenario.conditions.components, start_of(scenario.time), end_of(scenario.time),
-                std::move(start), scenario.conditions.turn ? scenario.conditions.turn->angle : 0};
+                scenario.conditions.components,
+                start_of(scenario.time),
+                end_of(scenario.time),
+                std::move(start),
+                scenario.conditions.turn ? scenario.conditions.turn->angle : 0,
+                scenario.lists_output ? std::move(scenario.output) : std::vector<double>()};
     }
 
 private:
@@ -141,6 +145,7 @@ UnknownNumbers unknown_numbers(NumberedTree tree, const MeshSource& files,
         UnknownNumber number{.name = one.name, .guess = one.guess};
         if (one.low) number.low = *one.low;
         if (one.high) number.high = *one.high;
+        number.unit = one.unit.empty() && one.name.starts_with("time.") ? "s" : one.unit;
         unknowns.numbers.push_back(std::move(number));
     }
     unknowns.rebuild = [rebuilding](std::span<const double> values) { return (*rebuilding)(values); };

@@ -17,6 +17,7 @@
 #include "livens/spacetime/accuracy/reference_solution.h"
 #include "livens/spacetime/accuracy/remeshing.h"
 #include "livens/spacetime/accuracy/until_accurate.h"
+#include "livens/spacetime/found.h"
 #include "livens/spacetime/march/step_size_controller.h"
 #include "livens/spacetime/solve_mesh.h"
 
@@ -33,9 +34,7 @@ constexpr int most_lost = 3;            // tries that did not find the motion of
 constexpr double telling = 1e-2;        // errors that are larger say no more than that elements are too long
 constexpr double most_response = 100;   // an error by what elements lose together
 constexpr double wasteful = 1.5;        // times the elements that are needed
-/// Of what rounding may move the motion by, if all of it went the worst way: what it does move it by.
-constexpr double rounding_share = 0.5;
-constexpr double nothing = 1e-4;           // of the error: what elements lose together does not make it
+constexpr double nothing = 1e-4;        // of the error: what elements lose together does not make it
 constexpr double coarsened_share = 2e-3;   // of the accuracy: what longer elements may lose together
 constexpr double near_rounding = 10;   // times what rounding makes of the motion: errors that may be no more
 
@@ -51,44 +50,17 @@ double times_of_motion(const Model& model, const Ends& ends)
     return duration * std::max(0.5 * (rate(ends.start) + rate(ends.end)), rate(steady));
 }
 
-TimeMesh halved(const TimeMesh& mesh)
-{
-    TimeMesh fine{{mesh.start()}, mesh.required};
-    for (int e = 0; e < mesh.n_elements(); ++e) {
-        fine.ends.push_back(mesh.ends[e] + 0.5 * mesh.length(e));
-        fine.ends.push_back(mesh.ends[e + 1]);
-    }
-    return fine;
-}
-
-/// Where laws of loads bend on the way of a motion: from each element's own state to its end, or to the next
-/// one that is not one of the bends as they were known before.
-std::vector<double> bends_of(const Model& model, const Problem& problem, const Motion& motion,
-                             const std::vector<double>& known, const Lobatto& lobatto, SolveOptions options)
-{
-    std::vector<double> bends;
-    if (!options.end_at_bends || !model.has_pieces()) return bends;
-    options.condition = options.judge = false;
-    options.initial = StartPolicy::project;
-    for (int e = 0, next = 1; e < motion.n_elements(); e = next++) {
-        while (std::ranges::binary_search(known, motion.mesh.ends[next])) ++next;
-        Problem part{{motion.at_end(e)}};
-        part.prepared = problem.prepared;
-        const TimeMesh one{{motion.mesh.ends[e], motion.mesh.ends[next]}};
-        const Solution s = solve_unjudged(model, part, one, lobatto, options);
-        bends.insert(bends.end(), s.motion.mesh.bends.begin(), s.motion.mesh.bends.end());
-    }
-    return bends;
-}
-
+/// What is asked for, with unknown numbers as they were guessed or found by what was solved last.
 struct Asked {
-    const Model& model_;
-    const Problem& problem_;
-    const Ends& ends_;
-    const Span& span_;
+    std::shared_ptr<const Stated> asked_;      // of the next try
+    std::shared_ptr<const Stated> found_of_;   // of the motion that was found last, with its numbers
     Lobatto lobatto_;
     SolveOptions options_;
     bool is_degree_free_;
+
+    const Model& model() const { return *found_of_->model; }
+    const Span& span() const { return found_of_->span; }
+    double duration() const { return span().end - span().start; }
 };
 
 /// What tries so far have come to.
@@ -103,29 +75,36 @@ struct Tried {
 
 class BetweenEnds final : public RepeatedMarch, private Asked, private Tried {
 public:
-    BetweenEnds(const Model& model, const Problem& problem, const Ends& ends, const Span& span,
-                const Lobatto& lobatto, const SolveOptions& options)
-        : Asked{model, problem, ends, span, lobatto, options, lobatto.degree == 0},
-          stops_(stops_of(model, span)), gap_(nearest_ends * (span.end - span.start))
+    BetweenEnds(const std::shared_ptr<const Stated>& stated, const Lobatto& lobatto,
+                const SolveOptions& options)
+        : Asked{stated, stated, lobatto, options, lobatto.degree == 0}, stops_(stops_of(model(), span())),
+          gap_(nearest_ends * duration())
     {
-        if (is_degree_free_) lobatto_.degree = span.accuracy < high_accuracy ? high_degree : preferred_degree;
-        const double times = times_of_motion(model, ends), wanted = times / first_length;
-        rate_ = times / (span.end - span.start);
+        options_.meeting = std::max(options_.meeting, span().accuracy);
+        if (is_degree_free_)
+            lobatto_.degree = span().accuracy < high_accuracy ? high_degree : preferred_degree;
+        const double times = times_of_motion(model(), stated->ends), wanted = times / first_length;
+        rate_ = times / duration();
         begin_with(static_cast<int>(std::ceil(std::clamp(wanted, 1.0, 1.0 * most_first))));
-        const double p_f = lobatto_.degree * ModelTables(model, ends.independent).freedoms();
-        bytes_ = 8 * (4 * p_f * p_f + 24 * lobatto_.degree * (12 * model.n_bodies() + model.n_rows()));
+        const double p_f = lobatto_.degree * ModelTables(model(), stated->ends.independent).freedoms();
+        bytes_ = 8 * (4 * p_f * p_f + 24 * lobatto_.degree * (12 * model().n_bodies() + model().n_rows()));
     }
 
     Solution solve() override
     {
-        Problem problem = problem_;
+        Problem problem = asked_->problem;
         if (found_) {
             problem.guess = [this](double t) { return found_->motion.at(t); };
             problem.is_only_guess = true;
         }
-        Solution solution = solve_mesh(model_, problem, mesh_, ends_, lobatto_, options_);
+        Solution solution = solve_mesh(*asked_->model, problem, mesh_, asked_->ends, lobatto_, options_);
         solution.report.evaluations_in_all = solution.report.evaluations;
-        if (solution.report.converged()) estimate(problem, solution);
+        if (!solution.report.converged()) return solution;
+        if (auto found = stated_with(asked_, solution.numbers, options_.initial))
+            found_of_ = std::move(found);
+        else
+            solution.report.status = SolveStatus::not_converged;
+        if (solution.report.converged()) estimate(solution);
         return solution;
     }
 
@@ -138,11 +117,11 @@ public:
         if (!found_ && !is_seen(solution) && search_on(tries)) return AfterTry::again;
         if (!report.converged()) return AfterTry::accept;
         const double error = error_of(solution);
-        const bool is_bent = find_bends(solution.motion);
-        const bool is_good = has_stops_ && !is_bent && error <= span_.accuracy;
-        const bool is_believed = is_once_good_ || in_vain_ <= far_off * span_.accuracy;
+        const bool is_off = find_bends(solution.motion) || misses_outputs(solution.motion);
+        const bool is_good = has_stops_ && !is_off && error <= span().accuracy;
+        const bool is_believed = is_once_good_ || in_vain_ <= far_off * span().accuracy;
         is_once_good_ = is_good;
-        if (has_stops_ && !is_bent && !is_good && error < telling) count(error);
+        if (has_stops_ && !is_off && !is_good && error < telling) count(error);
         return next(solution, tries, is_good && is_believed);
     }
 
@@ -151,6 +130,14 @@ public:
         return "try " + std::to_string(solution.report.tries) + ", with " +
                std::to_string(solution.motion.n_elements()) + " elements" + why_;
     }
+    std::string error_in_words(const Model& model, const Solution& solution) const override
+    {
+        const NumberError worst = of_numbers(solution);
+        if (!(worst.largest > solution.estimate.largest))
+            return RepeatedMarch::error_in_words(model, solution);
+        return "the error of the unknown '" + worst.name + "' is about " + to_text(worst.largest, 3) +
+               " of its size";
+    }
     bool is_march() const override { return false; }
 
 private:
@@ -158,21 +145,26 @@ private:
     void begin_with(int n)
     {
         n_first_ = n;
-        has_stops_ = span_.output.empty();
-        mesh_ = make_time_mesh(span_.start, span_.end, n, model_.load_breaks());
+        const Span& time = asked_->span;
+        has_stops_ = time.output.empty();
+        mesh_ = make_time_mesh(time.start, time.end, n, asked_->model->load_breaks());
     }
 
-    void estimate(Problem problem, Solution& solution) const
+    void estimate(Solution& solution) const
     {
+        Problem problem = found_of_->problem;
         problem.is_only_guess = true;
         const int n = solution.motion.n_elements();
-        ReferenceSolution second(model_, problem, lobatto_, options_, solution.motion);
+        ReferenceSolution second(model(), problem, lobatto_, options_, solution.motion);
         const bool is_good = second.advance(n);
         solution.report.evaluations_in_all += second.evaluations();
         solution.estimate_seconds = second.seconds();
         if (is_good) {
             solution.estimate = second.take(n);
-            count_rounding(model_, std::vector<double>(solution.motion.mesh.ends.size(), rounded(solution)),
+            second.tell_numbers(solution.numbers);
+            const double rounding = rounding_share * solution.report.moved_by_rounding;
+            add_events(model(), solution.motion, solution.estimate);
+            count_rounding(model(), std::vector<double>(solution.motion.mesh.ends.size(), rounding),
                            solution.motion.mesh, solution.estimate);
         } else if (second.report().status == SolveStatus::cancelled) {
             solution.report.status = SolveStatus::cancelled;
@@ -182,29 +174,35 @@ private:
         }
     }
 
-    /// Two solutions may agree by chance to less.
-    static double rounded(const Solution& solution)
+    NumberError of_numbers(const Solution& solution) const
     {
-        return rounding_share * solution.report.moved_by_rounding;
+        return error_of_numbers(found_of_->problem.unknowns, solution.numbers);
     }
 
-    static double error_of(const Solution& solution)
+    /// Two solutions may agree by chance to less.
+    double rounded(const Solution& solution) const
+    {
+        return rounding_share * std::max(solution.report.moved_by_rounding, of_numbers(solution).rounding);
+    }
+
+    /// Of the motion, or of a number by its size.
+    double error_of(const Solution& solution) const
     {
         const double error = solution.estimate.empty() ? infinite : solution.estimate.largest;
-        return std::isnan(error) ? infinite : error;
+        return std::isnan(error) ? infinite : std::max(error, of_numbers(solution).largest);
     }
 
     /// Whether a law bends elsewhere than elements end, by more than the motion goes in the accuracy. Both
     /// solutions would miss that alike.
     bool find_bends(const Motion& motion)
     {
-        std::vector<double> bends = bends_of(model_, problem_, motion, bends_, lobatto_, options_);
+        std::vector<double> bends = bends_of(*found_of_, motion, bends_, lobatto_, options_);
         const auto is_off = [&](double t) {
             const int e = motion.mesh.element_at(t);
-            return std::min(t - motion.mesh.ends[e], motion.mesh.ends[e + 1] - t) > span_.accuracy / rate_;
+            return std::min(t - motion.mesh.ends[e], motion.mesh.ends[e + 1] - t) > span().accuracy / rate_;
         };
         const bool is_bent = std::ranges::any_of(bends, is_off);
-        stops_ = stops_of(model_, span_);
+        stops_ = stops_of(model(), span());
         std::erase_if(bends, [&](double t) {
             return std::ranges::any_of(stops_, [&](double stop) { return std::abs(t - stop) <= gap_; });
         });
@@ -212,6 +210,18 @@ private:
         std::ranges::sort(stops_);
         bends_ = std::move(bends);
         return is_bent;
+    }
+
+    /// Whether elements end beside output times, since the time that was found is not the one of the try
+    /// before.
+    bool misses_outputs(const Motion& motion) const
+    {
+        if (asked_->problem.unknowns.is_empty() || !has_stops_) return false;
+        return std::ranges::any_of(span().output, [&](double t) {
+            const int e = motion.mesh.element_at(t);
+            return std::min(t - motion.mesh.ends[e], motion.mesh.ends[e + 1] - t) >
+                   std::max(span().accuracy / rate_, gap_);
+        });
     }
 
     void count(double error)
@@ -226,7 +236,7 @@ private:
     bool is_seen(const Solution& solution) const
     {
         return solution.report.converged() &&
-               velocity_jump(model_, solution.motion).largest <= acceptable_velocity_jump;
+               velocity_jump(model(), solution.motion).largest <= acceptable_velocity_jump;
     }
 
     /// Elements that are too long may have no solution that is near one of the motion's.
@@ -278,11 +288,11 @@ private:
     {
         const double error = error_of(solution);
         if (!found_) told_ = solution.report.notes;
-        const ElementScales scales(model_, solution.motion, solution.unseen);
+        const ElementScales scales(model(), solution.motion, solution.unseen);
         const int n = solution.motion.n_elements();
         const double lost = aimed(scales.mean_error() * n, error) / n;
         if (is_enough) return accept(solution, scales, lost);
-        if (rounded(solution) > span_.accuracy && error <= near_rounding * rounded(solution))
+        if (rounded(solution) > span().accuracy && error <= near_rounding * rounded(solution))
             return give_up(solution, in_vain(solution));
         if (n_in_vain_ >= most_in_vain || !(lost > 0)) return give_up(solution, in_vain(solution));
         if (tries >= most_meshes) return give_up(solution, ", and as many tries before it");
@@ -310,6 +320,9 @@ private:
     {
         mesh_ = std::move(mesh);
         has_stops_ = true;
+        Stated next = *found_of_;
+        next.problem.unknowns.held = held_outputs(next, error_of(solution));
+        asked_ = std::make_shared<const Stated>(std::move(next));
         found_ = std::move(solution);
         return AfterTry::again;
     }
@@ -323,19 +336,19 @@ private:
     double aimed(double lost, double error)
     {
         if (error >= telling) return blind_share * lost;
-        if (error > span_.accuracy && lost < nothing * error) {
+        if (error > span().accuracy && lost < nothing * error) {
             // rounding adds up from element to element: longer ones have less of it, if they see enough
-            return std::exchange(is_coarsened_, true) ? 0 : coarsened_share * span_.accuracy;
+            return std::exchange(is_coarsened_, true) ? 0 : coarsened_share * span().accuracy;
         }
-        const double ratio = target * span_.accuracy / error;
-        if (error > span_.accuracy) return lost * std::min(std::pow(ratio, 1 + 0.5 / lobatto_.degree), 0.3);
-        return target * span_.accuracy / std::clamp(error / lost, 1.0, most_response);
+        const double ratio = target * span().accuracy / error;
+        if (error > span().accuracy) return lost * std::min(std::pow(ratio, 1 + 0.5 / lobatto_.degree), 0.3);
+        return target * span().accuracy / std::clamp(error / lost, 1.0, most_response);
     }
 
     /// The highest whose elements are not much longer than the time between stops.
     void choose_degree(const ElementScales& scales, double error)
     {
-        const double stop = (span_.end - span_.start) / static_cast<double>(stops_.size() - 1);
+        const double stop = duration() / static_cast<double>(stops_.size() - 1);
         int& degree = lobatto_.degree;
         while (degree > lowest_degree && scales.mean_length(degree, aimed_lower * error) > fit * stop)
             --degree;
@@ -345,13 +358,16 @@ private:
     {
         const LargestError& found = solution.estimate;
         std::string text = "; more of them help no more: ";
-        if (rounded(solution) > span_.accuracy)
-            text += "rounding may move the motion by " + to_text(solution.report.moved_by_rounding, 3);
-        else if (found.unseen_load >= 0)
-            text += "the law of load '" + model_.loads()[static_cast<std::size_t>(found.unseen_load)].name +
+        if (rounded(solution) > span().accuracy) {
+            const bool is_motion = rounding_share * solution.report.moved_by_rounding == rounded(solution);
+            text += "rounding may move " + std::string(is_motion ? "the motion" : "an unknown number") +
+                    " by " + to_text(rounded(solution) / rounding_share, 3) +
+                    (is_motion ? "" : " of its size");
+        } else if (found.unseen_load >= 0)
+            text += "the law of load '" + model().loads()[static_cast<std::size_t>(found.unseen_load)].name +
                     "' changes too fast inside them";
         else
-            text += model_.loads().empty() && !model_.has_drives()
+            text += model().loads().empty() && !model().has_drives()
                         ? "rounding is left"
                         : "rounding is left, or a law bends or jumps inside them";
         return text;
@@ -373,7 +389,8 @@ Solution solve_between_ends(const Model& model, const Problem& problem, const En
 {
     const auto* automatic = std::get_if<AutomaticFamily>(&method);
     const Lobatto lobatto = automatic != nullptr ? Lobatto{automatic->degree} : std::get<Lobatto>(method);
-    BetweenEnds tries(model, problem, ends, span, lobatto, options);
+    const std::shared_ptr<const Model> own(std::shared_ptr<const Model>(), &model);
+    BetweenEnds tries(std::make_shared<const Stated>(Stated{own, problem, ends, span}), lobatto, options);
     return until_accurate(tries, model, span.accuracy, span.end);
 }
 

@@ -98,6 +98,7 @@ bool ReferenceSolution::advance(int end)
     report_ = std::move(second.report);
     evaluations_ += report_.evaluations;
     if (!report_.converged()) return false;
+    numbers_ = std::move(second.numbers.values);
     // with unknown instants it has some of its own: elements are compared, not times
     if (!problem_.unknowns.is_empty() && second.motion.mesh.ends.size() == mesh.ends.size())
         second.motion.mesh.ends = mesh.ends;
@@ -108,6 +109,16 @@ bool ReferenceSolution::advance(int end)
     options_.initial = StartPolicy::project;   // an end state holds its constraints to rounding
     at_ = end;
     return true;
+}
+
+void ReferenceSolution::tell_numbers(FoundNumbers& first) const
+{
+    if (numbers_.empty() || numbers_.size() != first.values.size()) return;
+    first.errors.resize(numbers_.size());
+    for (std::size_t i = 0; i < numbers_.size(); ++i) {
+        const double rounding = i < first.rounding.size() ? rounding_share * first.rounding[i] : 0;
+        first.errors[i] = std::max(std::abs(numbers_[i] - first.values[i]), rounding);
+    }
 }
 
 namespace {
@@ -259,6 +270,7 @@ void measure_error(const Model& model, const Problem& problem, const Method& met
         if (done == n) break;
     }
     solution.estimate = second.take(n);
+    second.tell_numbers(solution.numbers);
     name_law(solution, solution.estimate);
     add_lost_vibrations(model, solution.motion, solution.estimate);
     add_events(model, solution.motion, solution.estimate);

@@ -23,6 +23,8 @@ public:
     const SolveReport& report() const { return report_; }   ///< of what was solved last
     long long evaluations() const { return evaluations_; }
     double seconds() const { return seconds_; }
+    /// What is known of unknown numbers by those that it has found itself.
+    void tell_numbers(FoundNumbers& first) const;
     /// Up to an element end of the first motion.
     ErrorEstimate take(int last) { return meter_.take(last); }
 
@@ -38,7 +40,12 @@ private:
     SolveReport report_;
     long long evaluations_ = 0;
     double seconds_ = 0;
+    std::vector<double> numbers_;   // that it found
 };
+
+/// Of what rounding may move a motion between both ends by, if all of it went the worst way: what it does
+/// move it by.
+inline constexpr double rounding_share = 0.5;
 
 /// Vibrations that radau's elements do not resolve are taken by any degree alike, so that the second solution
 /// does not tell: the energy that was lost bounds how far they went. Nothing where dampers are faster, and

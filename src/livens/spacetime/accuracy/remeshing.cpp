@@ -9,6 +9,7 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
 #include "livens/spacetime/march/step_size_controller.h"
+#include "livens/spacetime/solve_mesh.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -95,6 +96,35 @@ std::vector<double> ElementScales::ends(int degree, double error, std::span<cons
         ends.push_back(stops[k]);
     }
     return ends;
+}
+
+TimeMesh halved(const TimeMesh& mesh)
+{
+    TimeMesh fine{{mesh.start()}, mesh.required};
+    for (int e = 0; e < mesh.n_elements(); ++e) {
+        fine.ends.push_back(mesh.ends[e] + 0.5 * mesh.length(e));
+        fine.ends.push_back(mesh.ends[e + 1]);
+    }
+    return fine;
+}
+
+std::vector<double> bends_of(const Stated& of, const Motion& motion, const std::vector<double>& known,
+                             const Lobatto& lobatto, SolveOptions options)
+{
+    const Model& model = *of.model;
+    std::vector<double> bends;
+    if (!options.end_at_bends || !model.has_pieces()) return bends;
+    options.condition = options.judge = false;
+    options.initial = StartPolicy::project;
+    for (int e = 0, next = 1; e < motion.n_elements(); e = next++) {
+        while (std::ranges::binary_search(known, motion.mesh.ends[next])) ++next;
+        Problem part{{motion.at_end(e)}};
+        part.prepared = of.problem.prepared;
+        const TimeMesh one{{motion.mesh.ends[e], motion.mesh.ends[next]}};
+        const Solution s = solve_unjudged(model, part, one, lobatto, options);
+        bends.insert(bends.end(), s.motion.mesh.bends.begin(), s.motion.mesh.bends.end());
+    }
+    return bends;
 }
 
 }   // namespace livens::inline spacetime_internal

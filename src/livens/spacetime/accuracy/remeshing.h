@@ -8,6 +8,7 @@
 #include "livens/diagnostics/estimate.h"
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
+#include "livens/spacetime/found.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -32,5 +33,12 @@ private:
     std::vector<double> unseen_;   // what laws of loads did inside of elements
     double mean_error_ = 0;
 };
+
+TimeMesh halved(const TimeMesh& mesh);
+
+/// Where laws of loads bend on the way of a motion: from each element's own state to its end, or to the next
+/// one that is not one of the bends as they were known before.
+std::vector<double> bends_of(const Stated& of, const Motion& motion, const std::vector<double>& known,
+                             const Lobatto& lobatto, SolveOptions options);
 
 }   // namespace livens::inline spacetime_internal

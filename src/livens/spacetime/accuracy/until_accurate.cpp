@@ -31,7 +31,7 @@ void say_how_far(const Model& model, double accuracy, double until, const std::s
 }
 
 /// Likewise of a motion that has conditions at both ends: there is no part of it that is as accurate.
-void say_how_far_between(const Model& model, double accuracy, const std::string& why, Solution& last)
+void say_how_far_between(const Model& model, double accuracy, const RepeatedMarch& march, Solution& last)
 {
     const ErrorEstimate& found = last.estimate;
     SolveReport& report = last.report;
@@ -39,12 +39,18 @@ void say_how_far_between(const Model& model, double accuracy, const std::string&
     report.failed_at = found.empty() ? last.motion.start() : found.time;
     report.message = "the accuracy " + to_text(accuracy, 6) + " is not reached between the two ends; ";
     report.message += found.empty() ? "the error is not known, since " + report.estimate_failed
-                                    : "the error of body '" + model.body_name(found.body) + "' is about " +
-                                          to_text(found.largest, 3) + " at " + to_text(found.time, 6) + " s";
-    report.message += " (" + why + "); try: a larger error in accuracy, or another duration";
+                                    : march.error_in_words(model, last);
+    report.message += " (" + march.why_not(last) + "); try: a larger error in accuracy, or another duration";
 }
 
 }   // namespace
+
+std::string RepeatedMarch::error_in_words(const Model& model, const Solution& solution) const
+{
+    const ErrorEstimate& found = solution.estimate;
+    return "the error of body '" + model.body_name(found.body) + "' is about " + to_text(found.largest, 3) +
+           " at " + to_text(found.time, 6) + " s";
+}
 
 Solution until_accurate(RepeatedMarch& march, const Model& model, double accuracy, double until)
 {
@@ -59,7 +65,7 @@ Solution until_accurate(RepeatedMarch& march, const Model& model, double accurac
         if (next == AfterTry::give_up && march.is_march())
             say_how_far(model, accuracy, until, march.why_not(solution), solution);
         else if (next == AfterTry::give_up)
-            say_how_far_between(model, accuracy, march.why_not(solution), solution);
+            say_how_far_between(model, accuracy, march, solution);
         if (next == AfterTry::accept || next == AfterTry::give_up) return solution;
         if (next == AfterTry::uncounted) --tries;
     }

@@ -41,6 +41,8 @@ public:
     virtual AfterTry judge(Solution& solution, int tries) = 0;
     /// Of the last try, which was given up: "with ever shorter elements, which help no more: ..".
     virtual std::string why_not(const Solution& solution) const = 0;
+    /// What is off: "the error of body 'bob' is about 3e-8 at 2 s".
+    virtual std::string error_in_words(const Model& model, const Solution& solution) const;
     /// Errors begin at an end of time and grow; false: they are everywhere between two ends.
     virtual bool is_march() const { return true; }
 };

@@ -24,6 +24,13 @@ std::string in_words(const Condition& condition)
     return name + " at the " + word_of(condition.at);
 }
 
+std::string path_of(const Condition& condition)
+{
+    if (condition.forgets_turns) return "time.periodic";
+    const std::string end = condition.at == Condition::At::end ? "end" : "start";
+    return condition.is_of_all ? end + ".given" : end + ".known[" + condition.quantity.name + "]";
+}
+
 std::vector<StateQuantity> quantities_at(const std::vector<Condition>& conditions, bool last)
 {
     std::vector<StateQuantity> all;

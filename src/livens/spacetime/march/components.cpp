@@ -13,6 +13,7 @@
 #include "livens/spacetime/march/condition_rows.h"
 #include "livens/spacetime/march/conserved.h"
 #include "livens/spacetime/march/end_point.h"
+#include "livens/spacetime/march/given_momenta.h"
 #include "livens/spacetime/march/numbered.h"
 
 namespace livens::inline spacetime_internal {
@@ -20,13 +21,6 @@ namespace livens::inline spacetime_internal {
 namespace {
 
 constexpr int n_places = 3;
-
-std::string path_of(const Condition& condition)
-{
-    if (condition.forgets_turns) return "time.periodic";
-    return std::string(condition.at == Condition::At::end ? "end" : "start") + ".known[" +
-           condition.quantity.name + "]";
-}
 
 /// Judges conditions at a few places; what is dependent at all of them is so by itself.
 class Judgement {
@@ -383,7 +377,11 @@ void make_given(const ModelTables& at_start, const ModelTables& at_end, Ends& en
     for (const Condition::At at : {Condition::At::start, Condition::At::end}) {
         const Known known = at == Condition::At::start ? ends.at_start : ends.at_end;
         if (known == Known::nothing || (at == Condition::At::start && ends.is_start_known())) continue;
-        const std::vector<Condition> all = judgement.of_state(at, known == Known::state);
+        const bool is_end = at == Condition::At::end;
+        const State& stated = is_end ? ends.end : ends.start;
+        const std::vector<Condition> all = known == Known::momenta
+                                               ? given_momenta(is_end ? at_end : at_start, stated, at)
+                                               : judgement.of_state(at, known == Known::state);
         ends.components.insert(ends.components.end(), all.begin(), all.end());
     }
     ends.whole[0] = std::exchange(ends.at_start, Known::nothing);

@@ -19,6 +19,9 @@ constexpr double met_component = 1e-8;
 /// "'tip.x' at the end".
 std::string in_words(const Condition& condition);
 
+/// Where it stands: "end.known[tip.x]".
+std::string path_of(const Condition& condition);
+
 /// What is compared at the start of time, or at the end.
 std::vector<StateQuantity> quantities_at(const std::vector<Condition>& conditions, bool last);
 

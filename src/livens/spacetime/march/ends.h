@@ -43,7 +43,8 @@ struct Ends {
     std::vector<Condition> components{};
     PeriodicEnds periodic{};
     int n_numbers = 0;   ///< unknown ones, which as many more components decide, with those of what unfolds
-    /// What of components is a whole state at the start and at the end, or its places: then all is compared.
+    /// What of components is a whole state at the start and at the end, or its places, or its momenta: then
+    /// all is compared with what was stated.
     std::array<Known, 2> whole{Known::nothing, Known::nothing};
     bool is_end_guessed = false;   ///< else the state at the end is made of that at the start
     enum class Start {

@@ -10,7 +10,18 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 
-namespace livens::inline spacetime_internal {
+namespace livens {
+
+double scale_of(const UnknownNumber& number)
+{
+    if (number.scale > 0) return number.scale;
+    if (number.guess != 0) return std::abs(number.guess);
+    const double width = number.high - number.low;
+    if (std::isfinite(width) && width > 0) return width;
+    return 1;
+}
+
+inline namespace spacetime_internal {
 
 namespace {
 
@@ -22,16 +33,20 @@ double moved_with(const std::vector<double>& from, double t, const std::vector<d
     std::size_t i = 1;
     while (i + 1 < from.size() && t > from[i]) ++i;
     if (t == from[i]) return to[i];
+    if (from[i - 1] == to[i - 1] && from[i] == to[i]) return t;   // to the bit: it may be an output time
     return to[i - 1] + (t - from[i - 1]) / (from[i] - from[i - 1]) * (to[i] - to[i - 1]);
 }
 
 }   // namespace
 
-NumberedProblem::Anchors NumberedProblem::anchors_of(const Model& model, double start, double end)
+NumberedProblem::Anchors NumberedProblem::anchors_of(const Model& model, double start, double end) const
 {
     Anchors all{{start}, {}};
     const std::vector<double> events = model.events();
-    for (const double t : model.load_breaks()) {
+    std::vector<double> inside = model.load_breaks();
+    inside.insert(inside.end(), unknowns_.held.begin(), unknowns_.held.end());
+    std::ranges::sort(inside);
+    for (const double t : inside) {
         if (!(t > start && t < end)) continue;
         if (std::ranges::binary_search(events, t)) all.events.push_back(all.instants.size());
         all.instants.push_back(t);
@@ -110,15 +125,6 @@ void NumberedProblem::put_components(const Rebuilt& rebuilt, std::span<const dou
     }
 }
 
-double NumberedProblem::scale(int i) const
-{
-    const UnknownNumber& number = numbers_[i];
-    if (number.guess != 0) return std::abs(number.guess);
-    const double width = number.high - number.low;
-    if (std::isfinite(width) && width > 0) return width;
-    return 1;
-}
-
 std::vector<NumberedProblem::Sample> NumberedProblem::samples(int i, double value) const
 {
     // the derivative of the polynomial through these: between them, or at the first one
@@ -145,4 +151,6 @@ double carried_to(const TimeMesh& from, double t, const TimeMesh& to)
     return to.ends[e] + (t - from.ends[e]) / from.length(e) * to.length(e);
 }
 
-}   // namespace livens::inline spacetime_internal
+}   // namespace spacetime_internal
+
+}   // namespace livens

@@ -34,8 +34,7 @@ public:
     const TimeMesh& mesh() const { return mesh_; }
     const UnknownNumbers& unknowns() const { return unknowns_; }
     std::vector<double> guesses() const;
-    /// What a number is compared with: its guess, or where that is zero its bounds, or one.
-    double scale(int i) const;
+    double scale(int i) const { return scale_of(numbers_[i]); }
     /// Values at which differences are taken, with their weights per scale: within the bounds.
     struct Sample {
         double value, weight;
@@ -55,12 +54,12 @@ private:
     const UnknownNumbers& unknowns_;
     std::vector<UnknownNumber> numbers_;
     /// Both ends of time and the instants between them at which laws of loads jump or bend, or joints begin
-    /// or end to act.
+    /// or end to act; and what is held.
     struct Anchors {
         std::vector<double> instants;
         std::vector<std::size_t> events;   ///< which of them are of joints
     };
-    static Anchors anchors_of(const Model& model, double start, double end);
+    Anchors anchors_of(const Model& model, double start, double end) const;
 
     Anchors anchors_;   // instants that go with the numbers
 };

@@ -68,7 +68,8 @@ Key known_key(const std::string& where)
             "bodies with what loads store. At both ends "
             "together there must be twice as many as the joints leave motions free. The bodies as they are "
             "placed, and their velocities, are a first guess. Angles at the end count turns from the "
-            "start. At an end without quantities `given` may say positions. For the family lobatto."};
+            "start. At an end without quantities `given` may say positions or momenta of all bodies. For the "
+            "family lobatto."};
 }
 
 void read_known(Builder& builder, const Section& table, Condition::At at, Conditions& boundary)

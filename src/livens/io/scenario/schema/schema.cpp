@@ -34,8 +34,9 @@ Table time_table()
                 "from_loads: elements end at jumps and kinks of loads; ignore: they do not."),
          Key{"accuracy", types::number,
              "Permitted error at all element ends: of centres of mass relative to the model "
-             "length, and of orientations in rad. The elements, and the degree "
-             "unless given, are chosen accordingly. For the families lobatto and radau with the state at the "
+             "length, and of orientations in rad; and of unknown numbers relative to their size. The "
+             "elements, and the degree unless given, are chosen accordingly. For the families lobatto and "
+             "radau with the state at the "
              "initial time, and for lobatto with conditions at both ends. Used by default if neither "
              "`elements` nor `knots` of `[method]` is given.",
              "", "1e-6"}

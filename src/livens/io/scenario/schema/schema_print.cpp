@@ -216,14 +216,15 @@ Between conditions at both ends of time (`[start.known]`, `[end.known]`) a numbe
 the end of time can be unknown: `{ unknown = 0.3, low = 0 }` in place of the number, as in
 `damping = { unknown = 0.3, low = 0 }` of a load, says a guess and, if need be, bounds.
 
-- There must be as many more conditions as unknown numbers. For the family lobatto, with `elements`.
+- There must be as many more conditions as unknown numbers. For the family lobatto, with `elements` or an
+  `accuracy`, which is one of each number by its size, too.
 - Beside `[start]` with `given = "state"` there are as many in `[end.known]` as unknown numbers.
 - The instant at which a joint is released may be unknown as well, `until = { unknown = 0.4, low = 0.1 }`. It
   does not pass other instants at which joints or loads switch.
 - Guess and bounds are numbers, strings with units, or expressions, as everywhere. Whole numbers and words
   cannot be unknown; a number inside of a formula can as a parameter: `A = { unknown = 2 }` in `[parameters]`.
-- What is found is a note of the result. The scenario in the result has it as its guess, so that it is that of
-  the motion.
+- What is found is a note of the result, with its estimated error. The scenario in the result has it as its
+  guess, so that it is that of the motion.
 - `--set L=0.3` replaces the guess of an unknown parameter.
 
 ## Lists and limits
