@@ -68,11 +68,12 @@ struct NewtonReport {
     SolveStatus status = SolveStatus::converged;
     int iterations = 0;   ///< accepted steps
     int factorisations = 0;
-    bool took_slopes = false;       ///< of stiff loads, in steps without a tangent of the whole
-    int slope_factors = 0;          ///< made for these; 0: one from an element before served
-    bool has_dear_factor = false;   ///< of these: the next element had better be as long
-    bool reached_limit = false;     ///< of iterations; else not_converged means that no step, however short,
-                                    ///< made the increment smaller
+    bool took_slopes = false;            ///< of stiff loads, in steps without a tangent of the whole
+    int slope_factors = 0;               ///< made for these; 0: one from an element before served
+    bool has_dear_factor = false;        ///< of these: the next element had better be as long
+    bool is_dearer_than_short = false;   ///< shorter elements would do without these, and cost less
+    bool reached_limit = false;   ///< of iterations; else not_converged means that no step, however short,
+                                  ///< made the increment smaller
     bool ended_by_rounding = false;   ///< converged, but short of the tolerance
     double residual = 0;           ///< Rows::size / Rows::terms where it ended; inf if rows were not finite
     double last_increment = 0;     ///< size of the last increment applied, damping included

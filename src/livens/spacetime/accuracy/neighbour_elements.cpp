@@ -16,9 +16,10 @@ namespace livens {
 namespace {
 
 constexpr int most_beside_steps = 8, most_slow_beside = 3;
-constexpr int least_beside_degree = 3;        // of which polynomials go on to say something
-constexpr int most_beside_twists = 100;       // steps of more are combined, which windows know
-constexpr double slow_beside = 0.3;           // contraction
+constexpr int least_beside_degree = 3;    // of which polynomials go on to say something
+constexpr int most_beside_twists = 100;   // steps of more are combined, which windows know
+// Contraction; and of steps of free bodies, which cost a small part of a factor.
+constexpr double slow_beside = 0.3, free_beside = 0.6;
 constexpr double farthest_beside = 1e-3;      // a step, lengths or radians
 constexpr double least_pivot_beside = 1e-5;   // of the rows' own size
 // By how much of what a projection takes off it errs with the factor of another neighbour.
@@ -195,6 +196,7 @@ bool NeighbourElements::iterate(BesideState& one, const BesideLimits& limits, bo
 {
     lanes::Sizes sizes;
     double rows = 0;
+    const int most = by_tangent ? most_beside_steps : std::max(most_beside_steps, choice_.most_free_steps());
     const auto end = [&](int steps, bool is_solved) {
         choice_.took(steps, is_solved, by_tangent);
         return is_solved;
@@ -205,16 +207,18 @@ bool NeighbourElements::iterate(BesideState& one, const BesideLimits& limits, bo
         const double shrinks = steps > 0 && rows > 0 ? sizes.rows / rows : 0;
         const bool is_slow = !(shrinks <= slow_beside);
         const bool is_rounding = sizes.step <= rounding_of_steps * std::min(sizes.motion, 1.0) ||
-                                 sizes.rows <= rounding_beside * sizes.terms;
+                                 sizes.rows <= rounding_beside * sizes.terms ||
+                                 (is_slow && sizes.rows <= rounding_beside * lane_rule_.largest_of_sums(
+                                                                                 nodes_.values().increments));
         const bool is_small = !is_slow && sizes.step * shrinks <= (1 - shrinks) * limits.left;
         if (steps > 0 && (is_rounding || is_small)) {
             const double pivot = std::min(pivot_, one.here().held.joints.values().pivots[0]);
             return end(steps, pivot > least_pivot_beside * least_pivot_beside);
         }
-        if (is_slow) ++n_slow;
+        if (!(shrinks <= (by_tangent ? slow_beside : free_beside))) ++n_slow;
         if (is_slow && by_tangent) choice_.forget_factor();
         rows = sizes.rows;
-        const bool goes_on = n_slow < most_slow_beside && steps < most_beside_steps;
+        const bool goes_on = n_slow < most_slow_beside && steps < most;
         if (!goes_on || !take_step(one, by_tangent, sizes)) return end(most_beside_steps, false);
     }
 }

@@ -101,7 +101,8 @@ void Neighbours::add(const Kicks& kicks, double factor)
     Perturbed one(neighbour(), neighbour());
     one.so_far = 1 / factor;
     for (int k = 0; k < (has_two_ ? 2 : 1); ++k)
-        one.starts[k] = beside(at_.model, motion().at_end(0), kicks, k == 0 ? factor : -factor, at_.rows());
+        one.starts[k] = beside(at_.model, motion().at_end(0), kicks, k == 0 ? factor : -factor, at_.rows(),
+                               roundings_ != nullptr);
     all_.push_back(std::move(one));
 }
 
@@ -277,7 +278,7 @@ int Neighbours::record(int first, int last)
 /// As a difference of states, off the joints by what bends.
 Difference Neighbours::kicked(const State& here, const Kicks& kicks, double factor) const
 {
-    return {beside(at_.model, here, kicks, factor, at_.rows()), here, 1};
+    return {beside(at_.model, here, kicks, factor, at_.rows(), true), here, 1};
 }
 
 /// What elements round on the way is added to what rounding has grown to: of n of them sqrt(n) times it.

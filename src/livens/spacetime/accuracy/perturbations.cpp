@@ -171,14 +171,16 @@ double size_of(const Model& model, const Kicks& kicks, double rate)
 }
 
 State beside(const Model& model, const State& state, const Kicks& kicks, double factor,
-             std::span<const int> rows)
+             std::span<const int> rows, bool are_roundings)
 {
     std::vector<Matrix34> moves;
     for (std::size_t b = 0; b < kicks.size(); ++b)
         moves.push_back(model.bodies()[b].is_point ? configuration(kicks[b].shift, Matrix3{})
                                                    : rate(state.X[b], kicks[b].shift, kicks[b].turn));
     const Model still = model.has_drives() ? frozen(model, {state.t}) : model;
-    if (!rows.empty()) moves = nearest_rates(still, state.X, moves, rows);
+    if (!rows.empty())
+        moves = (are_roundings ? nearest_if_alike(still, state.X, moves, rows)
+                               : nearest_rates(still, state.X, moves, rows));
     State s = state;
     for (std::size_t b = 0; b < kicks.size(); ++b) {
         const Vector3 step = factor * moves[b].column(0), faster = factor * kicks[b].push;

@@ -53,7 +53,7 @@ double size_of(const Model& model, const Kicks& kicks, double rate);
 /// The state with these kicks times a factor: off the given independent rows, in places and in rates, by no
 /// more than what bends. Without rows as it is.
 State beside(const Model& model, const State& state, const Kicks& kicks, double factor,
-             std::span<const int> rows);
+             std::span<const int> rows, bool are_roundings = false);
 
 /// A share of the difference of two states.
 struct Difference {

@@ -227,7 +227,7 @@ Elements March::take(Elements of, const AcceptedElements& closed, const NewtonRe
     if (attempt_.is_rescued) ++report_.rescued;
     if (outcome.ended_by_rounding) ++counts_.rounded;
     troubles_.avoided = 0;
-    partition().accepted(of, closed, outcome.iterations, outcome.has_dear_factor);
+    partition().accepted(of, closed, outcome);
     const double end = mesh_.ends[far(of)];
     if (options_.ends_at_bends && of.size() == 1 && events_.accepted(mesh_.ends[of.first], end)) {
         ++counts_.bends;

@@ -131,10 +131,12 @@ bool AdaptiveElements::reject(const Elements& of, double velocity_jump, bool can
     return true;
 }
 
-void AdaptiveElements::accepted(const Elements& of, const AcceptedElements& closed, int iterations,
-                                bool has_factor)
+void AdaptiveElements::accepted(const Elements& of, const AcceptedElements& closed,
+                                const NewtonReport& outcome)
 {
-    controller_.accepted(mesh_.length(of.first), closed.velocity_jump, iterations, has_factor);
+    const double length = mesh_.length(of.first);
+    controller_.accepted(length, closed.velocity_jump, outcome.iterations, outcome.has_dear_factor);
+    if (outcome.is_dearer_than_short) controller_.too_dear(length);
 }
 
 std::vector<int> divide(int n_elements, int length, int shortest)

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "livens/solvers/newton.h"
 #include "livens/solvers/report.h"
 #include "livens/spacetime/march/event_locator.h"
 #include "livens/spacetime/march/step_size_controller.h"
@@ -43,7 +44,7 @@ public:
     virtual bool reject(const Elements&, double velocity_jump, bool can_help, SolveReport&) = 0;
     /// A window is solved in two, the first of which ends before element `middle`.
     virtual void split(const Elements&, int middle) = 0;
-    virtual void accepted(const Elements&, const AcceptedElements&, int iterations, bool has_factor) = 0;
+    virtual void accepted(const Elements&, const AcceptedElements&, const NewtonReport&) = 0;
 };
 
 /// How windows of a mesh are divided.
@@ -70,7 +71,7 @@ public:
     void avoid(const Elements&, RankLoss) override;
     bool reject(const Elements&, double velocity_jump, bool can_help, SolveReport&) override;
     void split(const Elements&, int middle) override;
-    void accepted(const Elements&, const AcceptedElements&, int, bool) override {}
+    void accepted(const Elements&, const AcceptedElements&, const NewtonReport&) override {}
 
 private:
     int far(const Elements& of) const { return options_.direction > 0 ? of.last : of.first; }
@@ -100,7 +101,7 @@ public:
     void avoid(const Elements&, RankLoss) override;
     bool reject(const Elements&, double velocity_jump, bool can_help, SolveReport&) override;
     void split(const Elements&, int) override {}
-    void accepted(const Elements&, const AcceptedElements&, int iterations, bool has_factor) override;
+    void accepted(const Elements&, const AcceptedElements&, const NewtonReport&) override;
 
 private:
     TimeMesh& mesh_;

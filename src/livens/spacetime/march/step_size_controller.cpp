@@ -129,6 +129,13 @@ void StepSizeController::accepted(double length, double jump, int steps, bool ha
     ++n_accepted_;
 }
 
+void StepSizeController::too_dear(double length)
+{
+    blind_length_ = below_blind * length;
+    regained_ = 1;
+    length_ = std::min(length_, blind_length_);
+}
+
 bool StepSizeController::rejected(double length, double jump, double most)
 {
     if (most == 0) most = largest_jump_;

@@ -39,6 +39,8 @@ public:
     const std::vector<double>& left() const { return left_; }
     /// `steps`: of the iteration; `has_factor`: one that serves the next element if that is as long.
     void accepted(double length, double jump, int steps, bool has_factor = false);
+    /// What such an element took costs more than shorter ones do: these go on for a while.
+    void too_dear(double length);
     /// The next element is as long as this, if no stop is nearer.
     void shorten(double length) { length_ = length; }
     /// Else the next element would end where it begins.

@@ -5,6 +5,7 @@
 #include "livens/spacetime/nodal/kernel/kernel_rule.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "livens/dynamics/instant/instant.h"
 
@@ -87,6 +88,24 @@ void KernelRule::find_start_rates(const InstantState& start)
             for (int i = 0; i < 3; ++i)
                 start_rates_[12 * b + i] +=
                     tables_.bodies[b].center[a] * start_rates_[12 * b + 3 + 3 * a + i];
+}
+
+double KernelRule::largest_of_sums(const double* increments) const
+{
+    const int W = width_, p = rule_.degree;
+    const auto largest = [W, p](const double* of, int n) {
+        double most = 0;
+        for (int i = 0; i < n; ++i)
+            for (int l = 0; l < p; ++l) most = std::max(most, std::abs(of[i * W + l]));
+        return most;
+    };
+    double impulse = 0;
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        const BodyTable& body = tables_.bodies[b];
+        const double *d = increments + 12 * b * W, turned = largest(d + 3 * W, 9);
+        impulse = std::max(impulse, largest(d, 3) / body.inverse_root_mass + body.root_inertia * turned);
+    }
+    return impulse * largest(lanes_.k, p);
 }
 
 void KernelRule::use(const WindowLayout& layout, const InstantState& start, int last_steps)

@@ -29,6 +29,9 @@ public:
     const lanes::Rule& in_lanes() const { return lanes_; }
     /// Of nodes, in the order of their lanes.
     const std::vector<double>& times() const { return times_; }
+    /// Largest terms of the sums over k_AB that make rows, by increments of all nodes; they cancel, and leave
+    /// their rounding.
+    double largest_of_sums(const double* increments) const;
 
 private:
     void scale(double h);

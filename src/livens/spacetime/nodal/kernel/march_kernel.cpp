@@ -62,7 +62,7 @@ struct Shrinking {
         joints_rounding = rounding_of_rows * slopes.joints.terms();
     }
     /// False: there is no hope.
-    bool take(const lanes::Sizes& sizes, double rounding)
+    bool take(const lanes::Sizes& sizes, double rounding, double sums)
     {
         const double motion = std::clamp(sizes.motion, 1e-6, 1.0), allowed = tolerance * motion,
                      before = step;
@@ -78,8 +78,9 @@ struct Shrinking {
         const double rate =
             has_slopes ? std::max({contraction, contraction_before, least_rate}) : contraction;
         // steps that were seen to shrink, and shrink no more, have met their rounding
-        const bool is_noise = step <= std::max(allowed, rounding * motion) || sizes.rows <= rows_rounding ||
-                              (step <= rounding_of_places && sizes.rows <= joints_rounding);
+        const bool is_noise =
+            step <= std::max(allowed, rounding * motion) || sizes.rows <= rows_rounding ||
+            (step <= rounding_of_places && sizes.rows <= std::max(joints_rounding, rounding_of_rows * sums));
         const bool is_met = rate < 1 && step * rate <= share_of_tolerance * allowed * (1 - rate);
         // what shrinks slowly, but as it did, has not met it yet
         const bool is_stuck =
@@ -232,7 +233,12 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
         if (!std::isfinite(sizes.finite)) return false;
         moved += sizes.step;
         const double noise = std::clamp(rounding_by_pivot / pivot, least_rounding, most_rounding);
-        if (!(is_accelerated ? progress.approach(left, sizes) : progress.take(sizes, noise))) return false;
+        const double sums =
+            sizes.step <= rounding_of_places ? lane_rule_.largest_of_sums(nodes.increments) : 0;
+        const bool goes_on =
+            is_accelerated ? progress.approach(left, sizes) : progress.take(sizes, noise, sums);
+        if (!goes_on && kind == Steps::free) choice_.gave_up(progress.contraction, layout.h(0));
+        if (!goes_on) return false;
         const bool is_slow = !progress.is_done && progress.contraction > slow_contraction;
         if (kind == Steps::by_tangent && is_slow) choice_.forget_factor();   // rounding says nothing of it
     }
@@ -266,6 +272,8 @@ bool MarchKernel::solve(const WindowLayout& layout, const InstantState& start, c
         is_solved_ = iterates(kind);
         choice_.took(is_solved_ ? report.iterations : most_kernel_steps, is_solved_,
                      kind == Steps::by_tangent);
+        const bool is_by_tangent = is_solved_ && kind == Steps::by_tangent;
+        report.is_dearer_than_short = is_by_tangent && choice_.is_dearer_than_short(report.slope_factors);
         report.has_dear_factor = is_solved_ && kind == Steps::by_tangent && choice_.is_dear();
         return is_solved_;
     };

@@ -17,6 +17,10 @@ constexpr double usual_steps = 8;                  // of an element by slopes, b
 constexpr double usual_share = 0.25;               // of a factor that an element makes, likewise
 constexpr int first_trial = 8, last_trial = 512;   // elements until steps of free bodies are tried again
 constexpr double dear = 2;                         // elements
+// Factors in an element that say that none is kept for long; how steps of free bodies shrink where they are
+// worth their while, which goes with the square of the length; and a length short enough to try them.
+constexpr int many_factors = 2;
+constexpr double good_contraction = 0.3, much_shorter = 0.5, shorter = 0.85;
 constexpr double same_length = 0.03;   // of the motion of stiff loads a factor then leaves about twice that
 
 }   // namespace
@@ -38,6 +42,8 @@ void StepChoice::begin(const std::shared_ptr<const RowPattern>& pattern, const W
 {
     is_kept_ = is_kept_ && pattern == pattern_ && std::abs(layout.h(0) - h_) <= same_length * std::abs(h_);
     n_factors_ = 0;
+    const bool is_hopeful = given_up_.first * much_shorter * much_shorter < good_contraction;
+    if (is_hopeful && std::abs(layout.h(0)) < shorter * given_up_.second) n_until_trial_ = 0;
     if (pattern == pattern_ || !tangent_) return;
     pattern_ = pattern;
     const KernelTangent::Cost cost = tangent().cost();
@@ -53,6 +59,14 @@ bool StepChoice::is_dear() const
 int StepChoice::most_free_steps() const
 {
     return std::max(always_allowed, static_cast<int>(cost_by_tangent_));
+}
+
+void StepChoice::gave_up(double contraction, double h) { given_up_ = {contraction, std::abs(h)}; }
+
+bool StepChoice::is_dearer_than_short(int n_factors) const
+{
+    return n_factors >= many_factors && given_up_.second > 0 &&
+           given_up_.first * much_shorter * much_shorter < good_contraction;
 }
 
 void StepChoice::factorised(bool is_good, double h)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "livens/dynamics/lanes/row_pattern.h"
 #include "livens/spacetime/elements/kernel_functions.h"
@@ -36,6 +37,10 @@ public:
     /// Made for the element at hand.
     int n_factors() const { return n_factors_; }
     int last_steps() const { return last_steps_; }
+    /// Steps of free bodies shrank at last by no more than this, and were given up.
+    void gave_up(double contraction, double h);
+    /// An element with these factors costs more than shorter ones by steps of free bodies.
+    bool is_dearer_than_short(int n_factors) const;
     /// A factor costs more than the steps of some elements as the last one.
     bool is_dear() const;
 
@@ -44,6 +49,7 @@ private:
     std::shared_ptr<const RowPattern> pattern_;
     bool is_stiff_ = false, is_kept_ = false;
     double h_ = 0;
+    std::pair<double, double> given_up_{};   // contraction and length; 0: steps of free bodies never were
     double cost_by_tangent_ = 0;   // of an element, in steps of free bodies, as the last ones had it
     int last_steps_ = 0, n_until_trial_ = 0, trial_after_ = 0, kept_steps_ = 0, n_kept_ = 0, n_factors_ = 0;
 };
