@@ -195,7 +195,7 @@ livens_mutant(NAME shared_impulse_given_twice
 
 # Reflections that lead with whichever entry comes next: directions across the plane mix with those in it.
 livens_mutant(NAME reflections_without_choice
-              FILE solvers/dense.cpp
+              FILE solvers/orthogonal_basis.cpp
               OLD [[reflections_[j].lead = best;]]
               NEW [[reflections_[j].lead = j;]]
               TESTS_OF conservation
@@ -1725,7 +1725,7 @@ livens_mutant(NAME rest_is_periodic
 
 # Turns are conditions of periodic motions.
 livens_mutant(NAME periods_count_turns
-              FILE spacetime/nodal/end_conditions.cpp
+              FILE spacetime/march/end_conditions.cpp
               OLD [[if (condition.forgets_turns && q.counts_turns())]]
               NEW [[if (false)]]
               TESTS_OF convergence
@@ -1770,3 +1770,43 @@ livens_mutant(NAME impacts_between_ends
               NEW [[if (false && !is_met(]]
               TESTS_OF convergence
               MUST_FAIL PhasesBetweenEnds.AJointThatBeginsMustFindItsBodies)
+
+# The axis of a second angle stays where it is: the world supplies what its rotor does not have.
+livens_mutant(NAME rotor_axes_stand
+              FILE multibody/rotors.cpp
+              OLD [[momentum * (mixed + coordinate_rate(]]
+              NEW [[0 * momentum * (mixed + coordinate_rate(]]
+              TESTS_OF unit_io
+              MUST_FAIL RotorInertia.OfUniversalAndBallJointsIsThatOfTheirHinges)
+
+# A rotation vector has values beyond where it begins again.
+livens_mutant(NAME rotation_vectors_without_end
+              FILE multibody/coupling_rows.cpp
+              OLD [[if (!is_known(kind, q)) value.value =]]
+              NEW [[if (false && !is_known(kind, q)) value.value =]]
+              TESTS_OF unit_io
+              MUST_FAIL RotationVector.BeyondWhereItEndsIsRefusedOrTold)
+
+# Elements of the paper: momenta at the start push into the law with the sign of those at the end.
+livens_mutant(NAME momenta_of_a_border_all_leave
+              FILE spacetime/mixed/border.cpp
+              OLD [[(at_end ? P.a[c] : -P.a[c])]]
+              NEW [[(at_end ? P.a[c] : P.a[c])]]
+              TESTS_OF unit_io
+              MUST_FAIL MixedComponents.ConvergeToTheMotionThatTheConditionsHave)
+
+# Nobody asks elements of the paper whether conditions determine the motion.
+livens_mutant(NAME mixed_motions_left_free
+              FILE spacetime/solve_mesh.cpp
+              OLD [[if (is_asked && is_mixed && report.converged())]]
+              NEW [[if (false && is_asked && is_mixed && report.converged())]]
+              TESTS_OF unit_io
+              MUST_FAIL MixedComponents.WhatLeavesAMotionFreeIsRefused)
+
+# An exchange of rows that goes beyond a reflection is left out with it.
+livens_mutant(NAME exchanges_left_out
+              FILE solvers/orthogonal_basis.cpp
+              OLD [[reflections_[j].reach = std::max(end, reflections_[j].lead + 1);]]
+              NEW [[reflections_[j].reach = end;]]
+              TESTS_OF unit_solvers
+              MUST_FAIL OrthogonalBasis.LeavesOutNothingButZeros)

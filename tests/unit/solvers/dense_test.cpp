@@ -198,6 +198,41 @@ TEST(OrthogonalBasis, NullSpaceIsOrthonormalAndOrthogonalToTheColumns)
     }
 }
 
+/// Columns of joints of chains and trees, which are zero but on two bodies, in any order.
+TEST(OrthogonalBasis, LeavesOutNothingButZeros)
+{
+    constexpr int bodies = 9, n = 6 * bodies, k = 5 * bodies;
+    for (int kind = 0; kind < 4; ++kind) {
+        Columns c{n, k, Values(static_cast<std::size_t>(n * k), 0.0)};
+        const Values entries =
+            random_values(static_cast<std::size_t>(12 * k), 31 + static_cast<unsigned>(kind));
+        for (int j = 0; j < k; ++j) {
+            const int joint = kind == 1 ? bodies - 1 - j / 5 : kind == 3 ? (4 * (j / 5) + 1) % bodies : j / 5;
+            const int before = kind == 2 ? (joint - 1) / 2 : joint - 1;   // in a tree, else in a chain
+            for (int i = 0; i < 12; ++i) {
+                const int body = i < 6 ? before : joint;
+                if (body >= 0)
+                    c.a[static_cast<std::size_t>(j * n + 6 * body + i % 6)] =
+                        entries[static_cast<std::size_t>(12 * j + i)];
+            }
+        }
+        OrthogonalBasis q = basis_of(c);
+        for (const bool again : {false, true}) {   // with the choices kept as well
+            if (again) {
+                for (int j = 0; j < k; ++j)
+                    for (int i = 0; i < n; ++i) q.column(j)[i] = c.at(i, j);
+                q.factorise(k, true);
+            }
+            for (int j = 0; j < k; ++j) {
+                Values x(c.a.begin() + j * n, c.a.begin() + (j + 1) * n);
+                q.apply_transposed(x.data());
+                for (int i = j + 1; i < n; ++i)
+                    ASSERT_NEAR(x[static_cast<std::size_t>(i)], 0, 1e-13) << kind << " " << j << " " << i;
+            }
+        }
+    }
+}
+
 TEST(OrthogonalBasis, AppliesQAndItsTransposeAsInverses)
 {
     const OrthogonalBasis q = basis_of(random_columns(9, 4, 11));

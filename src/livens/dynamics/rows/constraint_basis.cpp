@@ -25,19 +25,22 @@ double ConstraintBasis::fill(const ModelTables& tables, int column, int row, Ins
     double* out = q.column(column);
     tables.rows.gradient(row, at, X, g);
     tables.scaled_gradient(row, X, maps, g, out);
-    // Sums go upwards, whichever body comes first in the joint.
-    const std::vector<int>& bodies = tables.rows[row].ascending;
-    const auto of_bodies = [&](const auto& act) {
-        for (const int body : bodies) {
-            const BodyTable& table = tables.bodies[body];
-            for (int i = table.first; i < table.first + table.dofs; ++i) act(out[i]);
-        }
+    // Of few bodies their entries alone, upwards, whichever body comes first in the joint.
+    const RowTable& table = tables.rows[row];
+    const auto for_entries = [&](const auto& act) {
+        const auto run = [&](int first, int n) {
+            for (int i = first; i < first + n; ++i) act(out[i]);
+        };
+        if (table.n_sides != 1 && table.n_sides != 2) return run(0, tables.n_twists);
+        const auto [low, high] = std::minmax(table.bodies[0], table.bodies[table.n_sides - 1]);
+        run(tables.bodies[low].first, tables.bodies[low].dofs);
+        if (high != low) run(tables.bodies[high].first, tables.bodies[high].dofs);
     };
     double sum = 0;
-    of_bodies([&](double entry) { sum += entry * entry; });
+    for_entries([&](double entry) { sum += entry * entry; });
     // A row without a gradient stays zero: its pivot then says that rank is lost.
     const double scale = sum > 0 ? 1 / std::sqrt(sum) : 1.0;
-    of_bodies([&](double& entry) { entry *= scale; });
+    for_entries([&](double& entry) { entry *= scale; });
     return scale;
 }
 

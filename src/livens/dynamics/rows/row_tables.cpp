@@ -47,8 +47,6 @@ RowTable row_table(const ConstraintRow& row)
     const RowBodies bodies = row_bodies(row);
     table.n_sides = bodies.size;
     table.bodies.assign(bodies.begin(), bodies.end());
-    table.ascending = table.bodies;
-    std::ranges::sort(table.ascending);
     find_columns(bodies, table);
     table.is_quadratic = row.is_quadratic();
     if (!table.is_quadratic) return table;

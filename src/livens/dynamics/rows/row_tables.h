@@ -12,8 +12,7 @@ namespace livens::inline dynamics_internal {
 struct RowTable {
     const ConstraintRow* row = nullptr;
     int n_sides = 0;
-    std::vector<int> bodies;      ///< of each side
-    std::vector<int> ascending;   ///< the same by their numbers
+    std::vector<int> bodies;   ///< of each side
     struct Entry {
         int from_side, from;   ///< side, and place of the column in the 12 numbers of X
         int to_side, to;

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Householder QR of the columns that joints have at one place: [Y Z][R; 0] of theory.md, "Eliminating the
+// joint multipliers". Columns touch few bodies: what is zero is left out.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "livens/solvers/dense.h"
+#include "livens/solvers/detail/short_rows.h"
+#include "livens/solvers/patience.h"
+
+namespace livens {
+
+void OrthogonalBasis::resize(int n, int most)
+{
+    n_ = n;
+    most_ = most;
+    k_ = 0;
+    g_.assign(count(n, most), 0.0);
+    reflections_.assign(static_cast<std::size_t>(most), {});
+    places_.assign(count(n, most), 0);
+    scratch_.assign(static_cast<std::size_t>(n), 0.0);
+}
+
+/// Brings the largest of the entries j..end - 1 of column j to place j; the others are zero.
+void OrthogonalBasis::lead(int j, bool keep, int end)
+{
+    double* v = column(j);
+    if (!keep) {
+        int best = j;
+        double largest = std::abs(v[j]);
+        for (int i = j + 1; i < end; ++i) {
+            if (!(std::abs(v[i]) > largest)) continue;
+            best = i;
+            largest = std::abs(v[i]);
+        }
+        reflections_[j].lead = best;
+    }
+    std::swap(v[j], v[reflections_[j].lead]);
+}
+
+/// Makes the reflector of column j from its entries j..behind - 1 and puts R_jj in place; the others are
+/// zero.
+void OrthogonalBasis::reflect(int j, bool keep_sign, int behind)
+{
+    double* v = column(j);
+    int* places = places_.data() + count(n_, j);
+    int used = 0, end = j + 1;
+    double tail = 0;
+    for (int i = j + 1; i < behind; ++i) {
+        if (v[i] == 0) continue;
+        tail += v[i] * v[i];
+        places[used++] = i;
+        end = i + 1;
+    }
+    reflections_[j].end = end;
+    reflections_[j].reach = std::max(end, reflections_[j].lead + 1);
+    reflections_[j].all_reach = std::max(reflections_[j].reach, j > 0 ? reflections_[j - 1].all_reach : 0);
+    reflections_[j].used = 2 * used <= end - j ? used : -1;
+    const double head = v[j];
+    const double length = std::sqrt(head * head + tail);
+    // the kept sign would cancel where head has come close to it
+    if (!keep_sign || reflections_[j].sign * head > 0.99 * length) reflections_[j].sign = head > 0 ? -1 : 1;
+    const double r = reflections_[j].sign * length;
+    const double v0 = head - r;
+    if (length == 0) {
+        reflections_[j].beta = 0;
+        return;
+    }
+    const double scale = 1 / v0;
+    for (int i = 0; i < used; ++i) v[places[i]] *= scale;
+    reflections_[j].beta = -v0 / r;
+    v[j] = r;
+}
+
+/// Exchange j, then reflection j.
+void OrthogonalBasis::reflect_column(int j, double* x) const
+{
+    std::swap(x[j], x[reflections_[j].lead]);
+    reflect_only(j, x);
+}
+
+inline void OrthogonalBasis::reflect_only(int j, double* x) const
+{
+    if (reflections_[j].beta == 0) return;
+    const double* v = column(j);
+    const int used = reflections_[j].used;
+    if (used < 0) {
+        const int m = reflections_[j].end - j - 1;
+        const double t = reflections_[j].beta * (x[j] + inner(v + j + 1, x + j + 1, m));
+        if (t == 0) return;
+        x[j] -= t;
+        subtract_scaled(x + j + 1, t, v + j + 1, m);
+        return;
+    }
+    const int* places = places_.data() + count(n_, j);
+    double t = x[j];
+    for (int i = 0; i < used; ++i) t += v[places[i]] * x[places[i]];
+    t *= reflections_[j].beta;
+    x[j] -= t;
+    for (int i = 0; i < used; ++i) x[places[i]] -= t * v[places[i]];
+}
+
+/// Column j by reflections 0..j - 1, of which those change nothing on whose rows it is zero: of a chain of
+/// bodies all but the last few. Entries from what is returned on are zero.
+int OrthogonalBasis::reflect_by_those_before(int j)
+{
+    double* x = column(j);
+    int first = 0, end = n_;   // what is not zero
+    while (end > 0 && x[end - 1] == 0) --end;
+    while (first < end && x[first] == 0) ++first;
+    // Up to which row the reflections 0..i reach together goes up with i.
+    int i = 0;
+    for (int above = j; i < above;) {
+        const int middle = (i + above) / 2;
+        if (reflections_[static_cast<std::size_t>(middle)].all_reach <= first)
+            i = middle + 1;
+        else
+            above = middle;
+    }
+    for (; i < j; ++i) {
+        const Reflection& one = reflections_[static_cast<std::size_t>(i)];
+        if (one.reach <= first || end <= i) continue;
+        reflect_column(i, x);
+        first = std::min(first, i + 1);   // row i is done with
+        end = std::max(end, one.reach);
+    }
+    return std::max(end, j + 1);
+}
+
+double OrthogonalBasis::factorise(int k, bool keep_choices)
+{
+    k_ = k;
+    double smallest = 1;
+    for (int j = 0; j < k; ++j) {
+        if (n_ >= large) Patience::ask();
+        const int end = reflect_by_those_before(j);
+        lead(j, keep_choices, end);
+        reflect(j, keep_choices, std::max(end, reflections_[static_cast<std::size_t>(j)].lead + 1));
+        smallest = std::min(smallest, std::abs(column(j)[j]));
+    }
+    return smallest;
+}
+
+double OrthogonalBasis::factorise_pivoted(int k, std::span<int> order)
+{
+    k_ = k;
+    for (int j = 0; j < most_; ++j) {
+        order[j] = j;
+        reflections_[j].norm = inner(column(j), column(j), n_);
+    }
+    double smallest = 1;
+    for (int j = 0; j < k; ++j) {
+        if (n_ >= large) Patience::ask();
+        // ties go to the earlier row, so that the choice does not hang on rounding
+        int best = j;
+        for (int c = j + 1; c < most_; ++c) {
+            if (reflections_[c].norm > reflections_[best].norm * (1 + 1e-10)) best = c;
+        }
+        if (best != j) {
+            std::swap_ranges(column(j), column(j) + n_, column(best));
+            std::swap(reflections_[j].norm, reflections_[best].norm);
+            std::swap(order[j], order[best]);
+        }
+        lead(j, false, n_);
+        reflect(j, false, n_);
+        smallest = std::min(smallest, std::abs(column(j)[j]));
+        for (int c = j + 1; c < most_; ++c) {
+            reflect_column(j, column(c));
+            // Norms are taken anew instead of reduced: a reduced norm has no digits left where a column
+            // depends on others.
+            reflections_[c].norm = inner(column(c) + j + 1, column(c) + j + 1, n_ - j - 1);
+        }
+    }
+    return smallest;
+}
+
+void OrthogonalBasis::apply_transposed(double* x) const
+{
+    for (int j = 0; j < k_; ++j) {
+        std::swap(x[j], x[reflections_[j].lead]);
+        reflect_only(j, x);
+    }
+}
+
+void OrthogonalBasis::apply(double* x) const
+{
+    for (int j = k_ - 1; j >= 0; --j) {
+        reflect_only(j, x);
+        std::swap(x[j], x[reflections_[j].lead]);
+    }
+}
+
+void OrthogonalBasis::solve_R(double* y) const
+{
+    for (int j = k_ - 1; j >= 0; --j) {
+        const double* c = column(j);
+        y[j] /= c[j];
+        subtract_scaled(y, y[j], c, j);
+    }
+}
+
+void OrthogonalBasis::solve_R_transposed(double* y) const
+{
+    for (int j = 0; j < k_; ++j) {
+        const double* c = column(j);
+        y[j] = (y[j] - inner(c, y, j)) / c[j];
+    }
+}
+
+void OrthogonalBasis::null_space(double* z) const
+{
+    const int f = n_ - k_;
+    std::fill(z, z + count(n_, f), 0.0);
+    for (int i = 0; i < f; ++i) z[count(k_ + i, f) + static_cast<std::size_t>(i)] = 1;
+    for (int j = k_ - 1; j >= 0; --j) {
+        if (reflections_[j].beta != 0) reflect_rows(j, z);
+        if (reflections_[j].lead != j)
+            std::swap_ranges(z + count(j, f), z + count(j + 1, f), z + count(reflections_[j].lead, f));
+    }
+}
+
+/// Reflection j of the rows of z, whose row j is zero.
+void OrthogonalBasis::reflect_rows(int j, double* z) const
+{
+    const int f = n_ - k_;
+    double* w = scratch_.data();
+    const double* v = column(j);
+    std::fill(w, w + f, 0.0);
+    for (int i = j + 1; i < reflections_[j].end; ++i)
+        if (v[i] != 0) subtract_scaled(w, -v[i], z + count(i, f), f);
+    double* zj = z + count(j, f);
+    for (int c = 0; c < f; ++c) {
+        w[c] *= reflections_[j].beta;
+        zj[c] = -w[c];
+    }
+    for (int i = j + 1; i < reflections_[j].end; ++i)
+        if (v[i] != 0) subtract_scaled(z + count(i, f), v[i], w, f);
+}
+
+}   // namespace livens
