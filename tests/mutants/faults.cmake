@@ -1548,10 +1548,18 @@ livens_mutant(NAME given_moments_are_forgotten
 # The second solution is taken to have the numbers of the first.
 livens_mutant(NAME numbers_have_no_error
               FILE spacetime/accuracy/estimate.cpp
-              OLD [[std::max(std::abs(numbers_[i] - first.values[i]), rounding)]]
-              NEW [[std::max(0 * std::abs(numbers_[i] - first.values[i]), rounding)]]
+              OLD [[std::max({std::abs(numbers_[i] - first.values[i]), rounding, left})]]
+              NEW [[std::max({0 * std::abs(numbers_[i] - first.values[i]), rounding, left})]]
               TESTS_OF unit_io
               MUST_FAIL UnknownsToAccuracy.ErrorsAreToldOfGivenElements)
+
+# A number at its bound is taken to be as exact as it comes out again and again.
+livens_mutant(NAME bounds_have_no_error
+              FILE spacetime/accuracy/estimate.cpp
+              OLD [[left = i < first.left.size() ? first.left[i] : 0;]]
+              NEW [[left = i < first.left.size() ? 0 * first.left[i] : 0;]]
+              TESTS_OF unit_io
+              MUST_FAIL UnknownsToAccuracy.BoundsThatAllButSufficeAreAsFarOffAsIsTold)
 
 # An accuracy is one of the motion alone, however little it says of a number.
 livens_mutant(NAME numbers_are_not_asked

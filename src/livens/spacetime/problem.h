@@ -131,6 +131,7 @@ struct FoundNumbers {
     /// Estimated, of the values: what those of the second solution differ by, and rounding. Empty: not known.
     std::vector<double> errors{};
     std::vector<double> rounding{};   ///< what of that is rounding; empty: nobody asked
+    std::vector<double> left{};       ///< by how much conditions would still move them, if no bound was there
 };
 
 struct Problem {

@@ -235,6 +235,33 @@ TEST(UnknownsToAccuracy, OutputTimesAreElementEnds)
     for (const double t : held.found->output) EXPECT_TRUE(std::ranges::binary_search(ends, t)) << t;
 }
 
+/// Times of a list that are behind the end that is found are left out, whatever was guessed.
+TEST(UnknownsToAccuracy, OutputTimesBehindTheEndAreLeftOut)
+{
+    const double T = duration_of_throw(3);
+    for (const char* guess : {"unknown = 0.9", "unknown = 1.6"})
+        for (const char* mesh : {"accuracy = 1e-9", "elements = 8"}) {
+            std::string text = replaced(thrown, "unknown = 1", guess);
+            text = replaced(text, "accuracy = 1e-9", std::string(mesh) + "\noutput = [0.2, 0.9, 1.5]");
+            const SolvedScenario s = solved(text);
+            ASSERT_TRUE(s.solution.report.converged()) << guess << ": " << s.solution.report.message;
+            EXPECT_NEAR(s.solution.motion.end(), T, 1e-6);
+            EXPECT_EQ(s.found->output, (T < 0.9 ? std::vector{0.2} : std::vector{0.2, 0.9})) << guess;
+        }
+}
+
+/// The bound is off by less than what counts as met: the motion is taken, with what is missing of the number.
+TEST(UnknownsToAccuracy, BoundsThatAllButSufficeAreAsFarOffAsIsTold)
+{
+    for (const char* bound : {"high = 0.7636936314", "high = 0.76369363141"}) {
+        const SolvedScenario s = solved(replaced(damped, "high = 5", bound));
+        ASSERT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+        const double error = std::abs(s.solution.numbers.values.at(0) - 0.763693631412843);
+        EXPECT_GE(s.solution.numbers.errors.at(0), 0.3 * error) << bound;
+        EXPECT_LE(s.solution.numbers.errors.at(0), 30 * std::max(error, 1e-11)) << bound;
+    }
+}
+
 /// As many as a march of the model that is found, twice at most.
 TEST(UnknownsToAccuracy, TakeFewElements)
 {

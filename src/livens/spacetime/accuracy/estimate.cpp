@@ -116,8 +116,9 @@ void ReferenceSolution::tell_numbers(FoundNumbers& first) const
     if (numbers_.empty() || numbers_.size() != first.values.size()) return;
     first.errors.resize(numbers_.size());
     for (std::size_t i = 0; i < numbers_.size(); ++i) {
-        const double rounding = i < first.rounding.size() ? rounding_share * first.rounding[i] : 0;
-        first.errors[i] = std::max(std::abs(numbers_[i] - first.values[i]), rounding);
+        const double rounding = i < first.rounding.size() ? rounding_share * first.rounding[i] : 0,
+                     left = i < first.left.size() ? first.left[i] : 0;   // at a bound that both come to
+        first.errors[i] = std::max({std::abs(numbers_[i] - first.values[i]), rounding, left});
     }
 }
 

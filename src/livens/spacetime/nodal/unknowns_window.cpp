@@ -145,6 +145,11 @@ double UnknownsWindow::size_of(std::span<const double> dx) const
 AcceptedElements UnknownsWindow::close(const AcceptanceCriteria& criteria, SolveReport& report)
 {
     is_formed_ = factorise();   // as long as nodes have their bases, of which closing takes some
+    found_.left.clear();
+    std::vector<double> dx(static_cast<std::size_t>(n_unknowns()));
+    if (is_formed_ && residual()) solve(dx);
+    for (int i = 0; i < problem_.n_stated(); ++i)
+        found_.left.push_back(std::abs(numbers_in(dx)[i]) * problem_.scale(i));
     const AcceptedElements closed = now_->window->close(criteria, report);
     const auto n_stated = problem_.n_stated();
     found_.values.assign(now_->values.begin(), now_->values.begin() + n_stated);

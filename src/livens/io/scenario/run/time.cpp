@@ -93,13 +93,20 @@ std::vector<double> output_by_interval(double start, double end, double step)
     return times;
 }
 
+/// Whether start or end is found with the motion.
+bool is_found(const Section& time, const char* key)
+{
+    const Value* value = time.find(key);
+    return value != nullptr && value->node != nullptr && value->node->is_unknown;
+}
+
 bool check_output_list(const Section& time, const Value& output, Findings& findings)
 {
     const double start = time.number("start"), end = time.number("end");
     const std::vector<double>& times = output.numbers;
     for (std::size_t i = 0; i < times.size(); ++i) {
         const SourceLocation place = output.node->items()[i].place;
-        if (times[i] < start || times[i] > end) {
+        if ((times[i] < start && !is_found(time, "start")) || (times[i] > end && !is_found(time, "end"))) {
             findings.error(place, "time-output",
                            "the output time " + to_text(times[i]) + " s lies outside the motion",
                            {"it lasts from " + to_text(start) + " s to " + to_text(end) + " s", ""});
@@ -122,7 +129,9 @@ bool read_output(const Section& time, std::vector<double>& times, Findings& find
     if (output == nullptr) return true;
     if (output->n_rows == 1) {
         if (!check_output_list(time, *output, findings)) return false;
+        const auto is_outside = [&](double t) { return t < time.number("start") || t > time.number("end"); };
         times = output->numbers;
+        std::erase_if(times, is_outside);   // of a time that is found
         return true;
     }
     const double start = time.number("start"), end = time.number("end"), step = output->numbers.front();

@@ -28,7 +28,8 @@ Table time_table()
          Key{"output", types::number_or_list,
              "Interval between output times (start and end are included), or an ascending list of output "
              "times. Output times are element ends, where results are most accurate, unless joints are "
-             "singular there. Default: all element ends.",
+             "singular there. Those of a list that lie behind an unknown end are left out. Default: all "
+             "element ends.",
              "s"},
          choice("breaks", {"from_loads", "ignore"},
                 "from_loads: elements end at jumps and kinks of loads; ignore: they do not."),
