@@ -1619,6 +1619,22 @@ livens_mutant(NAME components_unmet
               TESTS_OF convergence
               MUST_FAIL Components.ThatAreNotMetAreSuspect)
 
+# Rows of light bodies are asked for more digits than the sums over a heavy one have.
+livens_mutant(NAME sums_do_not_round
+              FILE spacetime/nodal/kernel/march_kernel.cpp
+              OLD [[rounding_of_rows * sums]]
+              NEW [[0 * sums]]
+              TESTS_OF convergence
+              MUST_FAIL Accuracy.MassesOfAnyRatioEndWhereTheirSumsRound)
+
+# The place of a heavy body is rounded by what the rods that hold it turn.
+livens_mutant(NAME masses_round_places
+              FILE spacetime/accuracy/perturbations.cpp
+              OLD [[are_roundings ? nearest_if_alike]]
+              NEW [[false ? nearest_if_alike]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Perturbations.RoundingOfAHeavyBodyDoesNotBendWhatHoldsIt)
+
 # Steps that have met rounding speak against the factor.
 livens_mutant(NAME rounding_forgets_a_factor
               FILE spacetime/nodal/kernel/march_kernel.cpp

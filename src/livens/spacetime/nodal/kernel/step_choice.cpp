@@ -20,12 +20,14 @@ constexpr double dear = 2;                         // elements
 // Factors in an element that say that none is kept for long; how steps of free bodies shrink where they are
 // worth their while, which goes with the square of the length; and a length short enough to try them.
 constexpr int many_factors = 2;
+constexpr double dearest = 100;   // steps of free bodies: two elements of half the length are cheaper
 constexpr double good_contraction = 0.3, much_shorter = 0.5, shorter = 0.85;
 constexpr double same_length = 0.03;   // of the motion of stiff loads a factor then leaves about twice that
 
 }   // namespace
 
 StepChoice::StepChoice(const ModelTables& tables, const ElementRule& rule, const lanes::Functions* functions)
+    : may_be_short_(rule.points == Points::lobatto)
 {
     if (functions != nullptr) tangent_ = std::make_unique<KernelTangent>(tables, rule, functions);
 }
@@ -42,7 +44,8 @@ void StepChoice::begin(const std::shared_ptr<const RowPattern>& pattern, const W
 {
     is_kept_ = is_kept_ && pattern == pattern_ && std::abs(layout.h(0) - h_) <= same_length * std::abs(h_);
     n_factors_ = 0;
-    const bool is_hopeful = given_up_.first * much_shorter * much_shorter < good_contraction;
+    const bool is_hopeful = tangent_ && may_be_short_ && tangent_->cost().factor * many_factors >= dearest &&
+                            given_up_.first * much_shorter * much_shorter < good_contraction;
     if (is_hopeful && std::abs(layout.h(0)) < shorter * given_up_.second) n_until_trial_ = 0;
     if (pattern == pattern_ || !tangent_) return;
     pattern_ = pattern;
@@ -65,7 +68,8 @@ void StepChoice::gave_up(double contraction, double h) { given_up_ = {contractio
 
 bool StepChoice::is_dearer_than_short(int n_factors) const
 {
-    return n_factors >= many_factors && given_up_.second > 0 &&
+    return may_be_short_ && n_factors >= many_factors && given_up_.second > 0 &&
+           n_factors * tangent_->cost().factor >= dearest &&
            given_up_.first * much_shorter * much_shorter < good_contraction;
 }
 

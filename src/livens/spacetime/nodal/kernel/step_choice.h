@@ -47,6 +47,7 @@ public:
 private:
     std::unique_ptr<KernelTangent> tangent_;
     std::shared_ptr<const RowPattern> pattern_;
+    bool may_be_short_;   // radau has long elements where motions end soon
     bool is_stiff_ = false, is_kept_ = false;
     double h_ = 0;
     std::pair<double, double> given_up_{};   // contraction and length; 0: steps of free bodies never were
