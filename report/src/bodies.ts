@@ -54,8 +54,10 @@ export function make_bodies(run: Run, is_ghost: boolean): Instances[] {
   for (let k = 0; k < run.meta.shapes; ++k) {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(run.array(`points ${k}`) as Float32Array, 3));
-    geometry.setAttribute("normal", new BufferAttribute(run.array(`normals ${k}`) as Float32Array, 3));
+    const normals = run.array(`normals ${k}`) as Float32Array;
     geometry.setIndex(new BufferAttribute(run.array(`corners ${k}`) as Uint32Array, 1));
+    if (normals.length > 0) geometry.setAttribute("normal", new BufferAttribute(normals, 3));
+    else geometry.computeVertexNormals(); // faces that share no corner: each has its own
     const lines = new EdgesGeometry(geometry, edge_angle),
       pieces = all.filter(({ piece }) => piece.shape === k);
     const kind_of = ({ body, piece }: (typeof all)[number]) => `${body < 0} ${piece.opacity}`;

@@ -51,6 +51,33 @@ UnitSurface unit_surface(Surface surface)
     return unit;
 }
 
+/// What no picture shows takes no room: bytes of zeros nearly vanish as they are compressed.
+constexpr double steps_of_points = 1 << 14, steps_of_normals = 1 << 8;
+Vector3 rounded(Vector3 v, double steps)
+{
+    for (double& x : v.a) x = std::round(steps * x) / steps;
+    return v;
+}
+
+/// Whether normals at corners are those of the faces as the page has them, none of which shares a corner.
+bool is_flat(const Surface& unit)
+{
+    std::size_t next = 0;
+    for (const auto& corners : unit.triangles) {
+        std::array<Vector3, 3> p{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (corners[i] != static_cast<int>(next++)) return false;
+            p[i] = rounded(unit.points[static_cast<std::size_t>(corners[i])], steps_of_points);
+        }
+        const Vector3 face = cross(p[1] - p[0], p[2] - p[0]);
+        const double size = norm(face);
+        for (const int corner : corners)   // a face without area is not seen
+            if (size > 1e-12 && !(dot(face, unit.normals[static_cast<std::size_t>(corner)]) > 0.98 * size))
+                return false;
+    }
+    return true;
+}
+
 /// Bodies of one form, whatever their sizes, share a surface.
 class Shapes {
 public:
@@ -75,12 +102,12 @@ private:
     void store(const Surface& unit, const std::string& number)
     {
         std::vector<double> points, normals, corners;
-        // What no picture shows takes no room: bytes of zeros nearly vanish as they are compressed.
-        const auto append = [](std::vector<double>& to, const Vector3& v, double steps) {
-            for (const double x : v.a) to.push_back(std::round(steps * x) / steps);
+        const auto append = [](std::vector<double>& to, const Vector3& v) {
+            to.insert(to.end(), std::begin(v.a), std::end(v.a));
         };
-        for (const Vector3& p : unit.points) append(points, p, 1 << 14);
-        for (const Vector3& n : unit.normals) append(normals, n, 1 << 8);
+        for (const Vector3& p : unit.points) append(points, rounded(p, steps_of_points));
+        if (!is_flat(unit))   // else the page finds them
+            for (const Vector3& n : unit.normals) append(normals, rounded(n, steps_of_normals));
         for (const auto& t : unit.triangles) corners.insert(corners.end(), t.begin(), t.end());
         payload_.add("points " + number, Precision::single, points);
         payload_.add("normals " + number, Precision::single, normals);
