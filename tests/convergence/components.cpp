@@ -492,7 +492,9 @@ TEST(Components, AreRefusedWhereTheyCannotBeSolvedFor)
         }
         return std::string("none");
     };
-    for (const Method& method : std::vector<Method>{Radau{4}, Mixed{}, Midpoint{}, Endpoint{}})
+    Mixed strong;
+    strong.start = Mixed::Start::strong;
+    for (const Method& method : std::vector<Method>{Radau{4}, strong, Midpoint{}, Endpoint{}})
         EXPECT_EQ(code(problem, mesh, method, links.model), "conditions-method") << name_of(method);
     Problem mixed = problem;
     mixed.conditions.at_start = Known::positions;

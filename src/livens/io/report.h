@@ -20,7 +20,7 @@ struct ReportOptions {
     /// What the poses of a run take on the page, bytes, roughly: those of all nodes in double precision if
     /// they fit, else rounded to a ten-millionth of their range, else those of fewer, longer elements. The
     /// page says which, and by how much it is off. Series over time may take half as much.
-    double most_bytes = 1.2e6;
+    double most_bytes = 1.5e6;
     int level = 9;   ///< of compression: 1 is quick, 9 small
 };
 
