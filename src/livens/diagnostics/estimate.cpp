@@ -59,8 +59,13 @@ void ErrorMeter::reach(int end)
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     const std::size_t so_far = estimate_.position.size() / static_cast<std::size_t>(estimate_.n_bodies);
     const auto ends = std::max(so_far, static_cast<std::size_t>(end) + 1);
-    for (auto* errors : {&estimate_.position, &estimate_.orientation, &estimate_.velocity})
+    // Room for all at once: doubled while they grow, they would be what a long motion takes most for.
+    const auto all = std::max(ends, static_cast<std::size_t>(motion_.n_elements()) + 1);
+    for (auto* errors : {&estimate_.position, &estimate_.orientation, &estimate_.velocity}) {
+        errors->reserve(all * static_cast<std::size_t>(estimate_.n_bodies));
         errors->resize(ends * static_cast<std::size_t>(estimate_.n_bodies), unknown);
+    }
+    estimate_.reaction.reserve(all * static_cast<std::size_t>(estimate_.n_joints));
     estimate_.reaction.resize(ends * static_cast<std::size_t>(estimate_.n_joints), unknown);
 }
 
