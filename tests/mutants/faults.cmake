@@ -1803,11 +1803,11 @@ livens_mutant(NAME rotor_axes_stand
               TESTS_OF unit_io
               MUST_FAIL RotorInertia.OfUniversalAndBallJointsIsThatOfTheirHinges)
 
-# A rotation vector has values beyond where it begins again.
+# Loads act along rotation vectors beyond where these begin again, and nobody looks.
 livens_mutant(NAME rotation_vectors_without_end
-              FILE multibody/coupling_rows.cpp
-              OLD [[if (!is_known(kind, q)) value.value =]]
-              NEW [[if (false && !is_known(kind, q)) value.value =]]
+              FILE spacetime/accuracy/load_limits.cpp
+              OLD [[for (const JointCoordinate& q : load.rotations) add(]]
+              NEW [[for (const JointCoordinate& q : std::vector<JointCoordinate>()) add(]]
               TESTS_OF unit_io
               MUST_FAIL RotationVector.BeyondWhereItEndsIsRefusedOrTold)
 

@@ -211,7 +211,8 @@ TEST(OrthogonalBasis, LeavesOutNothingButZeros)
             const int before = kind == 2 ? (joint - 1) / 2 : joint - 1;   // in a tree, else in a chain
             for (int i = 0; i < 12; ++i) {
                 const int body = i < 6 ? before : joint;
-                if (body >= 0)
+                // Rows of joints have zeros on their bodies, too, so that exchanges go far.
+                if (body >= 0 && (i + j % 5) % 6 != 0 && (i + j % 5) % 6 != 3)
                     c.a[static_cast<std::size_t>(j * n + 6 * body + i % 6)] =
                         entries[static_cast<std::size_t>(12 * j + i)];
             }
