@@ -81,7 +81,7 @@ const tests = {
 
   async "poses of a large run are rounded to a ten-millionth"() {
     const text = example("lagrange_top").replace(/\[(time|method)\][^[]*/g, ""),
-      time = '\n[time]\nend = 10\nelements = 3000\n[method]\nfamily = "lobatto"\ndegree = 6\n',
+      time = '\n[time]\nend = 10\nelements = 5000\n[method]\nfamily = "lobatto"\ndegree = 6\n',
       { run, page: file } = made("large", text + time),
       page = await open(file);
     assert.match(await page.textContent("#exactness"), /rounded to a ten-millionth/);
