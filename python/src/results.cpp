@@ -308,6 +308,47 @@ nb::object array(std::vector<double>&& numbers, const std::vector<std::size_t>& 
     return view(kept->data(), shape, owner);
 }
 
+namespace {
+
+std::map<std::string, double> unknown_errors(const Result& r)
+{
+    std::map<std::string, double> all;
+    const RunNumbers& numbers = r.run.numbers;
+    for (std::size_t i = 0; i < numbers.names.size(); ++i) all[numbers.names[i]] = numbers.errors[i];
+    return all;
+}
+
+/// What belongs to no result, or makes one.
+void add_functions(nb::module_& m)
+{
+    m.def("load_result", &load_result, nb::arg("file"));
+    m.def("from_bytes", &from_bytes, nb::arg("bytes"));
+    m.def("objection", &objection, nb::arg("file"), nb::arg("kind"), nb::arg("inputs"), nb::arg("force"));
+    m.def("write_file", &write_file, nb::arg("file"), nb::arg("bytes"));
+    m.def("figure_meanings", &figure_meanings);
+    m.def(
+        "shown_unit",
+        [](const std::string& unit, const std::vector<std::string>& wished) {
+            const ShownUnit shown = shown_unit(unit, wished);
+            return nb::make_tuple(shown.factor, shown.unit);
+        },
+        nb::arg("unit"), nb::arg("wished"));
+    m.def("judged_figures", [] {
+        nb::list all;
+        for (const JudgedFigure& f : judged_figures())
+            all.append(nb::make_tuple(f.figure, f.name, f.meaning));
+        return all;
+    });
+    m.def("export_formats", [] {
+        nb::list all;
+        for (const ExportFormat& f : export_formats())
+            all.append(nb::make_tuple(f.word, f.extension, f.what));
+        return all;
+    });
+}
+
+}   // namespace
+
 void add_results(nb::module_& m)
 {
     nb::class_<Result> result(m, "Result");
@@ -327,14 +368,7 @@ void add_results(nb::module_& m)
         .def_prop_ro("method", [](const Result& r) { return r.run.method; })
         .def_prop_ro("version", [](const Result& r) { return r.run.version; })
         .def_prop_ro("scenario_text", [](const Result& r) { return r.run.scenario_text; })
-        .def_prop_ro("unknown_errors",
-                     [](const Result& r) {
-                         std::map<std::string, double> all;
-                         const RunNumbers& numbers = r.run.numbers;
-                         for (std::size_t i = 0; i < numbers.names.size(); ++i)
-                             all[numbers.names[i]] = numbers.errors[i];
-                         return all;
-                     })
+        .def_prop_ro("unknown_errors", &unknown_errors)
         .def_prop_ro("resolved", [](const Result& r) { return r.run.resolved; })
         .def_prop_ro("solve_seconds", [](const Result& r) { return r.solve_seconds; })
         .def_prop_ro("estimate_seconds", [](const Result& r) { return r.estimate_seconds; })
@@ -365,30 +399,7 @@ void add_results(nb::module_& m)
         .def("export_to", &export_to, nb::arg("format"), nb::arg("result"), nb::arg("file"), nb::arg("force"),
              nb::arg("instants"), nb::arg("units"), nb::arg("picture"))
         .def("inputs", &inputs);
-    m.def("load_result", &load_result, nb::arg("file"));
-    m.def("from_bytes", &from_bytes, nb::arg("bytes"));
-    m.def("objection", &objection, nb::arg("file"), nb::arg("kind"), nb::arg("inputs"), nb::arg("force"));
-    m.def("write_file", &write_file, nb::arg("file"), nb::arg("bytes"));
-    m.def("figure_meanings", &figure_meanings);
-    m.def(
-        "shown_unit",
-        [](const std::string& unit, const std::vector<std::string>& wished) {
-            const ShownUnit shown = shown_unit(unit, wished);
-            return nb::make_tuple(shown.factor, shown.unit);
-        },
-        nb::arg("unit"), nb::arg("wished"));
-    m.def("judged_figures", [] {
-        nb::list all;
-        for (const JudgedFigure& f : judged_figures())
-            all.append(nb::make_tuple(f.figure, f.name, f.meaning));
-        return all;
-    });
-    m.def("export_formats", [] {
-        nb::list all;
-        for (const ExportFormat& f : export_formats())
-            all.append(nb::make_tuple(f.word, f.extension, f.what));
-        return all;
-    });
+    add_functions(m);
 }
 
 }   // namespace livens::python

@@ -104,41 +104,24 @@ bool leads_over_half_a_turn(const Point& from, const Point& to)
     return from[3] < 0 && to[3] < 0 && from[0] * to[0] + from[1] * to[1] + from[2] * to[2] < 0;
 }
 
-/// A component of a rotation vector, times a number; no number where nobody knows it.
-SmoothFunction multiple_of_rotation(double factor)
+/// What does not count turns, times a number; of a rotation vector no number where nobody knows it.
+SmoothFunction multiple_of_function(CoordinateKind kind, std::size_t n, double factor)
 {
-    constexpr CoordinateKind kind = CoordinateKind::rotation_component;
-    const auto at = [factor](const Point& q) {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    const bool ends = kind == CoordinateKind::rotation_component;
+    const auto at = [=](const Point& q) {
         Value value = times(factor, coordinate_at(kind, q));
-        if (!is_known(kind, q)) value.value = std::numeric_limits<double>::quiet_NaN();
+        if (ends && !is_known(kind, q)) value.value = unknown;
         return value;
     };
     return {at,
-            [at](const Point& from, std::span<const Point> steps, std::span<Value> out) {
+            [at, ends](const Point& from, std::span<const Point> steps, std::span<Value> out) {
                 const double before = at(from).value;
                 for (std::size_t i = 0; i < steps.size(); ++i) {
                     Point to = from;
                     for (std::size_t k = 0; k < to.size(); ++k) to[k] += steps[i][k];
                     out[i] = at(to);
-                    out[i].value = leads_over_half_a_turn(from, to) ? std::numeric_limits<double>::quiet_NaN()
-                                                                    : out[i].value - before;
-                }
-            },
-            rotation_forms};
-}
-
-/// What does not count turns, times a number.
-SmoothFunction multiple_of_function(CoordinateKind kind, std::size_t n, double factor)
-{
-    const auto at = [kind, factor](const Point& q) { return times(factor, coordinate_at(kind, q)); };
-    return {at,
-            [at](const Point& from, std::span<const Point> steps, std::span<Value> out) {
-                const double before = at(from).value;
-                for (std::size_t i = 0; i < steps.size(); ++i) {
-                    Point to = from;
-                    for (std::size_t k = 0; k < to.size(); ++k) to[k] += steps[i][k];
-                    out[i] = at(to);
-                    out[i].value -= before;
+                    out[i].value = ends && leads_over_half_a_turn(from, to) ? unknown : out[i].value - before;
                 }
             },
             n};
@@ -148,7 +131,6 @@ SmoothFunction multiple_of(const JointCoordinate& q, double factor)
 {
     if (q.counts_turns()) return multiple_of_angle(factor);
     if (!q.is_angle()) return multiple(factor);
-    if (q.kind == CoordinateKind::rotation_component) return multiple_of_rotation(factor);
     return multiple_of_function(q.kind, q.forms.size(), factor);
 }
 
