@@ -180,6 +180,9 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
                "take the natural momentum");
     if (mixed != nullptr && !problem.unknowns.is_empty())
         refuse("method.family", "elements 'mixed' with unknown numbers", "", "use lobatto");
+    if (mixed != nullptr && (given.at_start == Known::momenta || given.at_end == Known::momenta))
+        refuse("method.family", "elements 'mixed' with momenta of all bodies at the other end",
+               "other motions that meet them are looked for with lobatto alone", "use lobatto");
     if (given.turn && !(norm(given.turn->axis) > 0))
         throw InputError(
             {"axis-zero", "time.periodic", "the axis of the turn must not be zero", "0, 0, 0", "", "", ""});

@@ -209,6 +209,9 @@ TEST(MixedComponents, WhatTheyCannotIsRefused)
     EXPECT_NE(code_of(pendulum(known, 0.5, mixed2 + "\nwindow = 4")).find("mixed-block"), std::string::npos);
     EXPECT_NE(code_of(pendulum(known, 0.5, "family = \"radau\"\ndegree = 3")).find("conditions-method"),
               std::string::npos);
+    const std::string momenta = "[start]\ngiven = \"momenta\"\n[end]\nknown = { \"pin.angle\" = 0.2 }\n";
+    EXPECT_NE(code_of(pendulum(momenta, 0.5, mixed2)).find("conditions-method"), std::string::npos);
+    EXPECT_EQ(code_of(pendulum(momenta, 0.5, fine)), "") << "negative control";
     EXPECT_EQ(code_of(pendulum(known, 0.5, mixed2)), "") << "negative control";
 }
 
