@@ -6,7 +6,7 @@
 
 #include "exit_code.h"
 #include "failure.h"
-#include "livens/spacetime/instructions.h"
+#include "livens/solvers/instructions.h"
 
 namespace livens::program {
 

@@ -7,8 +7,8 @@
 #include "livens/dynamics/lanes/load_lanes.h"
 #include "livens/dynamics/lanes/load_program.h"
 #include "livens/multibody/model.h"
+#include "livens/solvers/instructions.h"
 #include "livens/spacetime/elements/kernel_functions.h"
-#include "livens/spacetime/instructions.h"
 #include "properties/load_kit.h"
 
 namespace livens {

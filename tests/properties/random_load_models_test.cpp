@@ -9,7 +9,7 @@
 #include "livens/multibody/loads/load_laws.h"
 #include "livens/multibody/loads/load_tape.h"
 #include "livens/multibody/model.h"
-#include "livens/spacetime/instructions.h"
+#include "livens/solvers/instructions.h"
 #include "properties/joint_kit.h"
 #include "properties/load_kit.h"
 

@@ -3,7 +3,7 @@
 // docs/validation.md.
 #include <cstdio>
 
-#include "livens/spacetime/instructions.h"
+#include "livens/solvers/instructions.h"
 #include "reference/published.h"
 
 namespace livens::tests {

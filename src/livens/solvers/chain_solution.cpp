@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "livens/solvers/detail/chain.h"
+#include "livens/solvers/short_rows.h"
 
 namespace livens::inline solvers_internal {
 
@@ -35,11 +36,27 @@ void ChainSolver::solve(std::span<double> x, bool is_transposed) const
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += work_.right_side[i];
 }
 
+/// Nothing but the closing system has a right-hand side then.
+void ChainSolver::solve_closing(std::span<const double> rows, std::span<double> ends) const
+{
+    assert(is_regular_ && n_links() > 0 && static_cast<int>(ends.size()) == closing_.n_pivots());
+    work_.front.assign(ends.size() - rows.size(), 0.0);
+    work_.front.insert(work_.front.end(), rows.begin(), rows.end());
+    closing_.apply(work_.front.data());
+    closing_.solve(work_.front.data(), nullptr);
+    std::copy(work_.front.begin(), work_.front.end(), ends.begin());
+}
+
 /// y -= A x or A^T x.
 void ChainSolver::subtract_product(const double* x, double* y, bool is_transposed) const
 {
-    const auto take = [=](int i, int j, double value) {
-        is_transposed ? y[j] -= value * x[i] : y[i] -= value * x[j];
+    const RowFunctions& rows = row_functions();
+    const auto take = [&](int i, int j, const double* values, int n) {
+        if (is_transposed)
+            subtract_scaled(rows, y + j, x[i], values, n);
+        else
+            y[i] -= inner(rows, values, x + j, n);
+        return values + n;
     };
     const int behind = first_unknown_.empty() ? 0 : first_unknown_.back();
     for (int e = 0; e < n_links(); ++e) {
@@ -47,16 +64,17 @@ void ChainSolver::subtract_product(const double* x, double* y, bool is_transpose
         const double *value = matrix_.storage(e).data(), *seen = matrix_.border_storage(e).data();
         const int n = matrix_.n_columns(e), i0 = row(link.first), j0 = unknown(link.first);
         for (int i = 0; i < matrix_.n_rows(e); ++i) {
-            for (int j = 0; j < n; ++j) take(i0 + i, j0 + j, *value++);
-            for (int j = 0; j < border(); ++j) take(i0 + i, behind + j, *seen++);
+            value = take(i0 + i, j0, value, n);
+            seen = take(i0 + i, behind, seen, border());
         }
     }
     if (n_links() == 0) return;
     const int first = structure_->n_unknowns.front(), last = structure_->n_unknowns.back();
     const double* value = matrix_.closing().data();
-    for (int i = 0; i < structure_->n_closing; ++i)
-        for (int j = 0; j < first + last + border(); ++j)
-            take(first_row_.back() + i, j < first ? j : behind - last + j - first, *value++);
+    for (int i = 0; i < structure_->n_closing; ++i) {
+        value = take(first_row_.back() + i, 0, value, first);
+        value = take(first_row_.back() + i, behind - last, value, last + border());
+    }
 }
 
 /// x, by rows, <- A^-1 x, by unknowns.

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <utility>
 
-#include "livens/solvers/detail/short_rows.h"
 #include "livens/solvers/patience.h"
+#include "livens/solvers/short_rows.h"
 
 namespace livens {
 

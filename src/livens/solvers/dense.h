@@ -5,10 +5,13 @@
 // after `resize` and leave exact zeros exact (a planar motion stays planar to the bit).
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
 namespace livens::inline solvers_internal {
+
+struct RowFunctions;
 
 /// LU with row exchanges of a square matrix stored row by row.
 class DenseLU {
@@ -49,6 +52,18 @@ private:
     mutable std::vector<double> permuted_;
 };
 
+/// Of an OrthogonalBasis.
+struct Reflection {
+    double beta = 0;     // H_j = I - beta v v^T
+    double sign = 1;     // of R_jj
+    double norm = 0;     // of the column, squared, as far as it is not reduced
+    int lead = 0;        // row exchanged with row j before
+    int end = 0;         // entries from here on are zero
+    int reach = 0;       // rows from here on it leaves alone, the exchange included
+    int all_reach = 0;   // likewise this one and all before it
+    int used = -1;       // how many entries are not zero, if they are few; else -1
+};
+
 /// QR of a tall matrix, given by its k columns of length n, by Householder reflections: A = Q [R; 0].
 /// The last n - k columns of Q span the null space of A^T.
 ///
@@ -63,6 +78,9 @@ public:
     int rank() const { return k_; }
     /// Column j is filled in by the caller before factorise(); overwritten by it.
     double* column(int j) { return g_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(n_); }
+
+    /// Entries of column j that may not be zero, first..end - 1: else it is looked through by factorise().
+    void reach_of(int j, int first, int end) { ranges_[static_cast<std::size_t>(j)] = {first, end}; }
 
     /// Factorises the first k columns in their order. Returns the smallest |R_jj| (1 if k = 0).
     /// `keep_choices` leads with the entries, and takes the signs, of the last call, so that the basis varies
@@ -82,10 +100,10 @@ public:
 private:
     void lead(int j, bool keep, int end);
     void reflect(int j, bool keep_sign, int behind);
-    int reflect_by_those_before(int j);
-    void reflect_column(int j, double* x) const;
-    void reflect_only(int j, double* x) const;
-    void reflect_rows(int j, double* z) const;
+    int reflect_by_those_before(int j, const RowFunctions& rows);
+    void reflect_column(int j, double* x, const RowFunctions& rows) const;
+    void reflect_only(int j, double* x, const RowFunctions& rows) const;
+    void reflect_rows(int j, double* z, const RowFunctions& rows) const;
     const double* column(int j) const
     {
         return g_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(n_);
@@ -95,18 +113,9 @@ private:
     int most_ = 0;
     int k_ = 0;
     std::vector<double> g_;   // R above the diagonal, reflectors (first entry 1 implied) below
-    struct Reflection {
-        double beta = 0;     // H_j = I - beta v v^T
-        double sign = 1;     // of R_jj
-        double norm = 0;     // of the column, squared, as far as it is not reduced
-        int lead = 0;        // row exchanged with row j before
-        int end = 0;         // entries from here on are zero
-        int reach = 0;       // rows from here on it leaves alone, the exchange included
-        int all_reach = 0;   // likewise this one and all before it
-        int used = -1;       // how many entries are not zero, if they are few; else -1
-    };
     std::vector<Reflection> reflections_;
-    std::vector<int> places_;   // of their entries that are not zero, n a reflection
+    std::vector<std::array<int, 2>> ranges_;   // of columns: entries that may not be zero
+    std::vector<int> places_;                  // of their entries that are not zero, n a reflection
     mutable std::vector<double> scratch_;
 };
 

@@ -155,6 +155,8 @@ public:
         }
     }
 
+    void solve_closing(std::span<const double>, std::span<double>) const override {}   // there are none
+
     LinearReport report() const override
     {
         LinearReport report{.singular_node = singular_node_};

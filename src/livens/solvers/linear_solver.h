@@ -39,6 +39,9 @@ public:
     virtual void solve(std::span<double> x) const = 0;
     /// In: right-hand side by unknowns; out: by rows.
     virtual void solve_transposed(std::span<double> x) const = 0;
+    /// Of closing rows alone, all others zero: unknowns of the first node, where these rows see them, of the
+    /// last, of the border. The chain's are not refined.
+    virtual void solve_closing(std::span<const double> rows, std::span<double> ends) const = 0;
     /// Of the last factorisation. Looks through the factors: not for every solution.
     virtual LinearReport report() const = 0;
 };

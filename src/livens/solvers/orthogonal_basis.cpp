@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "livens/solvers/dense.h"
-#include "livens/solvers/detail/short_rows.h"
 #include "livens/solvers/patience.h"
+#include "livens/solvers/short_rows.h"
 
 namespace livens {
 
@@ -18,6 +18,7 @@ void OrthogonalBasis::resize(int n, int most)
     k_ = 0;
     g_.assign(count(n, most), 0.0);
     reflections_.assign(static_cast<std::size_t>(most), {});
+    ranges_.assign(static_cast<std::size_t>(most), {0, n});
     places_.assign(count(n, most), 0);
     scratch_.assign(static_cast<std::size_t>(n), 0.0);
 }
@@ -74,23 +75,23 @@ void OrthogonalBasis::reflect(int j, bool keep_sign, int behind)
 }
 
 /// Exchange j, then reflection j.
-void OrthogonalBasis::reflect_column(int j, double* x) const
+void OrthogonalBasis::reflect_column(int j, double* x, const RowFunctions& rows) const
 {
     std::swap(x[j], x[reflections_[j].lead]);
-    reflect_only(j, x);
+    reflect_only(j, x, rows);
 }
 
-inline void OrthogonalBasis::reflect_only(int j, double* x) const
+inline void OrthogonalBasis::reflect_only(int j, double* x, const RowFunctions& rows) const
 {
     if (reflections_[j].beta == 0) return;
     const double* v = column(j);
     const int used = reflections_[j].used;
     if (used < 0) {
         const int m = reflections_[j].end - j - 1;
-        const double t = reflections_[j].beta * (x[j] + inner(v + j + 1, x + j + 1, m));
+        const double t = reflections_[j].beta * (x[j] + inner(rows, v + j + 1, x + j + 1, m));
         if (t == 0) return;
         x[j] -= t;
-        subtract_scaled(x + j + 1, t, v + j + 1, m);
+        subtract_scaled(rows, x + j + 1, t, v + j + 1, m);
         return;
     }
     const int* places = places_.data() + count(n_, j);
@@ -103,10 +104,10 @@ inline void OrthogonalBasis::reflect_only(int j, double* x) const
 
 /// Column j by reflections 0..j - 1, of which those change nothing on whose rows it is zero: of a chain of
 /// bodies all but the last few. Entries from what is returned on are zero.
-int OrthogonalBasis::reflect_by_those_before(int j)
+int OrthogonalBasis::reflect_by_those_before(int j, const RowFunctions& rows)
 {
     double* x = column(j);
-    int first = 0, end = n_;   // what is not zero
+    auto [first, end] = ranges_[static_cast<std::size_t>(j)];   // what is not zero
     while (end > 0 && x[end - 1] == 0) --end;
     while (first < end && x[first] == 0) ++first;
     // Up to which row the reflections 0..i reach together goes up with i.
@@ -121,7 +122,7 @@ int OrthogonalBasis::reflect_by_those_before(int j)
     for (; i < j; ++i) {
         const Reflection& one = reflections_[static_cast<std::size_t>(i)];
         if (one.reach <= first || end <= i) continue;
-        reflect_column(i, x);
+        reflect_column(i, x, rows);
         first = std::min(first, i + 1);   // row i is done with
         end = std::max(end, one.reach);
     }
@@ -131,10 +132,11 @@ int OrthogonalBasis::reflect_by_those_before(int j)
 double OrthogonalBasis::factorise(int k, bool keep_choices)
 {
     k_ = k;
+    const RowFunctions& rows = row_functions();
     double smallest = 1;
     for (int j = 0; j < k; ++j) {
         if (n_ >= large) Patience::ask();
-        const int end = reflect_by_those_before(j);
+        const int end = reflect_by_those_before(j, rows);
         lead(j, keep_choices, end);
         reflect(j, keep_choices, std::max(end, reflections_[static_cast<std::size_t>(j)].lead + 1));
         smallest = std::min(smallest, std::abs(column(j)[j]));
@@ -145,6 +147,7 @@ double OrthogonalBasis::factorise(int k, bool keep_choices)
 double OrthogonalBasis::factorise_pivoted(int k, std::span<int> order)
 {
     k_ = k;
+    const RowFunctions& rows = row_functions();
     for (int j = 0; j < most_; ++j) {
         order[j] = j;
         reflections_[j].norm = inner(column(j), column(j), n_);
@@ -166,7 +169,7 @@ double OrthogonalBasis::factorise_pivoted(int k, std::span<int> order)
         reflect(j, false, n_);
         smallest = std::min(smallest, std::abs(column(j)[j]));
         for (int c = j + 1; c < most_; ++c) {
-            reflect_column(j, column(c));
+            reflect_column(j, column(c), rows);
             // Norms are taken anew instead of reduced: a reduced norm has no digits left where a column
             // depends on others.
             reflections_[c].norm = inner(column(c) + j + 1, column(c) + j + 1, n_ - j - 1);
@@ -177,65 +180,70 @@ double OrthogonalBasis::factorise_pivoted(int k, std::span<int> order)
 
 void OrthogonalBasis::apply_transposed(double* x) const
 {
+    const RowFunctions& rows = row_functions();
     for (int j = 0; j < k_; ++j) {
         std::swap(x[j], x[reflections_[j].lead]);
-        reflect_only(j, x);
+        reflect_only(j, x, rows);
     }
 }
 
 void OrthogonalBasis::apply(double* x) const
 {
+    const RowFunctions& rows = row_functions();
     for (int j = k_ - 1; j >= 0; --j) {
-        reflect_only(j, x);
+        reflect_only(j, x, rows);
         std::swap(x[j], x[reflections_[j].lead]);
     }
 }
 
 void OrthogonalBasis::solve_R(double* y) const
 {
+    const RowFunctions& rows = row_functions();
     for (int j = k_ - 1; j >= 0; --j) {
         const double* c = column(j);
         y[j] /= c[j];
-        subtract_scaled(y, y[j], c, j);
+        subtract_scaled(rows, y, y[j], c, j);
     }
 }
 
 void OrthogonalBasis::solve_R_transposed(double* y) const
 {
+    const RowFunctions& rows = row_functions();
     for (int j = 0; j < k_; ++j) {
         const double* c = column(j);
-        y[j] = (y[j] - inner(c, y, j)) / c[j];
+        y[j] = (y[j] - inner(rows, c, y, j)) / c[j];
     }
 }
 
 void OrthogonalBasis::null_space(double* z) const
 {
     const int f = n_ - k_;
+    const RowFunctions& rows = row_functions();
     std::fill(z, z + count(n_, f), 0.0);
     for (int i = 0; i < f; ++i) z[count(k_ + i, f) + static_cast<std::size_t>(i)] = 1;
     for (int j = k_ - 1; j >= 0; --j) {
-        if (reflections_[j].beta != 0) reflect_rows(j, z);
+        if (reflections_[j].beta != 0) reflect_rows(j, z, rows);
         if (reflections_[j].lead != j)
             std::swap_ranges(z + count(j, f), z + count(j + 1, f), z + count(reflections_[j].lead, f));
     }
 }
 
 /// Reflection j of the rows of z, whose row j is zero.
-void OrthogonalBasis::reflect_rows(int j, double* z) const
+void OrthogonalBasis::reflect_rows(int j, double* z, const RowFunctions& rows) const
 {
     const int f = n_ - k_;
     double* w = scratch_.data();
     const double* v = column(j);
     std::fill(w, w + f, 0.0);
     for (int i = j + 1; i < reflections_[j].end; ++i)
-        if (v[i] != 0) subtract_scaled(w, -v[i], z + count(i, f), f);
+        if (v[i] != 0) subtract_scaled(rows, w, -v[i], z + count(i, f), f);
     double* zj = z + count(j, f);
     for (int c = 0; c < f; ++c) {
         w[c] *= reflections_[j].beta;
         zj[c] = -w[c];
     }
     for (int i = j + 1; i < reflections_[j].end; ++i)
-        if (v[i] != 0) subtract_scaled(z + count(i, f), v[i], w, f);
+        if (v[i] != 0) subtract_scaled(rows, z + count(i, f), v[i], w, f);
 }
 
 }   // namespace livens

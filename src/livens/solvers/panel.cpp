@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "livens/solvers/short_rows.h"
+
 namespace livens::inline solvers_internal {
 
 namespace {
@@ -82,16 +84,15 @@ void Panel::subtract(int i, int k, int from)
 {
     const double l = row(i)[k];
     if (l == 0) return;
-    const double* __restrict u = row(k);
-    double* __restrict y = row(i);
     const int end = reach_[k];
-    for (int j = from; j < end; ++j) y[j] -= l * u[j];
+    subtract_scaled(row_functions(), row(i) + from, l, row(k) + from, end - from);
     reach_[i] = std::max(reach_[i], end);
 }
 
 bool Panel::eliminate(int n_first, int reach)
 {
     beta_.clear();
+    const auto subtract_pair = row_functions().subtract_pair;
     for (int i = 0; i < n_rows_; ++i) {
         is_first_[i] = i < n_first;
         reach_[i] = i < n_first ? reach : width_;
@@ -114,14 +115,12 @@ bool Panel::eliminate(int n_first, int reach)
         const double e = 1 / row(k + 1)[k + 1];
         for (int i = k + 2; i < n_rows_; ++i) row(i)[k + 1] *= e;
         subtract(k + 1, k, k + 2);
-        const double* __restrict u = row(k);
-        const double* __restrict v = row(k + 1);
+        const double *u = row(k) + k, *v = row(k + 1) + k;
         const int end = std::max(reach_[k], reach_[k + 1]);
         for (int i = k + 2; i < n_rows_; ++i) {
-            double* __restrict y = row(i);
-            const double l = y[k], m = y[k + 1];
-            if (l == 0 && m == 0) continue;
-            for (int j = k + 2; j < end; ++j) y[j] -= l * u[j] + m * v[j];
+            double* y = row(i) + k;
+            if (y[0] == 0 && y[1] == 0) continue;
+            subtract_pair(y + 2, y[0], u + 2, y[1], v + 2, end - k - 2);
             reach_[i] = std::max(reach_[i], end);
         }
     }
@@ -180,12 +179,8 @@ void Panel::apply(double* x) const
         reflect_vector(k, x);
     }
     if (!beta_.empty()) return;
-    for (int i = 1; i < n_rows_; ++i) {
-        const double* l = row(i);
-        double sum = x[i];
-        for (int k = 0; k < std::min(i, n_pivots_); ++k) sum -= l[k] * x[k];
-        x[i] = sum;
-    }
+    const RowFunctions& rows = row_functions();
+    for (int i = 1; i < n_rows_; ++i) x[i] -= inner(rows, row(i), x, std::min(i, n_pivots_));
 }
 
 void Panel::apply_transposed(double* x) const
@@ -193,29 +188,30 @@ void Panel::apply_transposed(double* x) const
     for (int k = n_pivots_ - 1; k >= 0 && !beta_.empty(); --k)   // a reflection is its own inverse
         reflect_vector(k, x);
     if (!beta_.empty()) return;
-    for (int i = n_rows_ - 1; i > 0; --i)
-        for (int k = 0; k < std::min(i, n_pivots_); ++k) x[k] -= row(i)[k] * x[i];
+    const RowFunctions& rows = row_functions();
+    for (int i = n_rows_ - 1; i > 0; --i) subtract_scaled(rows, x, x[i], row(i), std::min(i, n_pivots_));
     for (int k = n_pivots_ - 1; k >= 0; --k) std::swap(x[k], x[exchanged_[k]]);
 }
 
 void Panel::solve(double* x, const double* others) const
 {
+    const RowFunctions& rows = row_functions();
     for (int k = n_pivots_ - 1; k >= 0; --k) {
         const double* u = row(k);
-        double sum = x[k];
-        for (int j = n_pivots_; j < width_; ++j) sum -= u[j] * others[j - n_pivots_];
-        for (int j = k + 1; j < n_pivots_; ++j) sum -= u[j] * x[j];
-        x[k] = sum / u[k];
+        const double sum = inner(rows, u + n_pivots_, others, width_ - n_pivots_) +
+                           inner(rows, u + k + 1, x + k + 1, n_pivots_ - k - 1);
+        x[k] = (x[k] - sum) / u[k];
     }
 }
 
 void Panel::solve_transposed(double* x, double* others) const
 {
+    const RowFunctions& rows = row_functions();
     for (int k = 0; k < n_pivots_; ++k) {
         const double* u = row(k);
         x[k] /= u[k];
-        for (int j = k + 1; j < n_pivots_; ++j) x[j] -= u[j] * x[k];
-        for (int j = n_pivots_; j < width_; ++j) others[j - n_pivots_] -= u[j] * x[k];
+        subtract_scaled(rows, x + k + 1, x[k], u + k + 1, n_pivots_ - k - 1);
+        subtract_scaled(rows, others, x[k], u + n_pivots_, width_ - n_pivots_);
     }
 }
 

@@ -55,6 +55,16 @@ public:
     void solve(std::span<double> x) const override { solve(x, false); }
     void solve_transposed(std::span<double> x) const override { solve(x, true); }
 
+    void solve_closing(std::span<const double> rows, std::span<double> ends) const override
+    {
+        Values x(static_cast<std::size_t>(matrix_.size), 0.0);
+        std::copy(rows.begin(), rows.end(), x.end() - static_cast<std::ptrdiff_t>(rows.size()));
+        solve(x, false);
+        const auto behind = x.begin() + first_unknown_.back();
+        const auto to = std::copy_n(x.begin(), structure_->n_unknowns.front(), ends.begin());
+        std::copy(behind - structure_->n_unknowns.back(), x.end(), to);
+    }
+
     LinearReport report() const override { return {.factor_entries = lu_.factor_entries()}; }
 
 private:

@@ -262,6 +262,38 @@ TEST(ChainSolver, IsAsGoodAsSparseFactors)
     EXPECT_GE(n_backends, 1);
 }
 
+/// Of conditions alone the ends are had without what is between them.
+TEST(ChainSolver, ConditionsAloneGiveTheEnds)
+{
+    for (const int n : {1, 2, 7})
+        for (const int border : {0, 3}) {
+            const int f = 3;
+            const BlockStructure s = bordered(uniform(n, 2, f), border, 2 * f);
+            BlockMatrix matrix;
+            matrix.resize(s);
+            fill(s, 5, matrix);
+            BlockMatrix same = matrix;
+            const auto chain = chain_solver(), whole = whole_solver(SparseBackend::eigen);
+            chain->analyse(s);
+            whole->analyse(s);
+            ASSERT_EQ(chain->factorise(matrix), Outcome::regular);
+            ASSERT_EQ(whole->factorise(same), Outcome::regular);
+            const Values rows = Random(6).values(s.n_closing);
+            Values x(static_cast<std::size_t>(size_of(s)), 0.0);
+            std::copy(rows.begin(), rows.end(), x.end() - s.n_closing);
+            chain->solve(x);
+            for (const LinearSolver* solver : {chain.get(), whole.get()}) {
+                Values ends(static_cast<std::size_t>(2 * f + s.n_border));
+                solver->solve_closing(rows, ends);
+                for (int i = 0; i < f; ++i) EXPECT_NEAR(ends[i], x[i], 1e-10) << n << ' ' << border;
+                for (int i = 0; i < f + s.n_border; ++i)
+                    EXPECT_NEAR(ends[f + i], x[x.size() - static_cast<std::size_t>(f + s.n_border - i)],
+                                1e-10)
+                        << n << ' ' << border;
+            }
+        }
+}
+
 TEST(ChainSolver, HoldsPeriodicMotionsThatGrow)
 {
     // x at the next node = M x with both growing and decaying parts, and x the same at both ends: nothing is

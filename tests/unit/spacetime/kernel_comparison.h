@@ -7,8 +7,8 @@
 
 #include "livens/dynamics/instant/instant.h"
 #include "livens/multibody/model.h"
+#include "livens/solvers/instructions.h"
 #include "livens/spacetime/elements/rule.h"
-#include "livens/spacetime/instructions.h"
 #include "unit/multibody/random_states.h"
 
 namespace livens {

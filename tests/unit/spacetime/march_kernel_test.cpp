@@ -13,7 +13,7 @@
 #include "livens/dynamics/instant/instant.h"
 #include "livens/dynamics/start/consistent_start.h"
 #include "livens/multibody/joints.h"
-#include "livens/spacetime/instructions.h"
+#include "livens/solvers/instructions.h"
 #include "livens/spacetime/nodal/system.h"
 #include "livens/spacetime/solve.h"
 #include "unit/multibody/random_states.h"

@@ -27,14 +27,19 @@ double ConstraintBasis::fill(const ModelTables& tables, int column, int row, Ins
     tables.scaled_gradient(row, X, maps, g, out);
     // Of few bodies their entries alone, upwards, whichever body comes first in the joint.
     const RowTable& table = tables.rows[row];
+    const bool are_few = table.n_sides == 1 || table.n_sides == 2;
+    const int low = are_few ? std::min(table.bodies[0], table.bodies[table.n_sides - 1]) : 0,
+              high = are_few ? std::max(table.bodies[0], table.bodies[table.n_sides - 1])
+                             : tables.n_bodies() - 1;
+    const auto end_of = [&](int body) { return tables.bodies[body].first + tables.bodies[body].dofs; };
+    q.reach_of(column, tables.bodies[low].first, end_of(high));
     const auto for_entries = [&](const auto& act) {
-        const auto run = [&](int first, int n) {
-            for (int i = first; i < first + n; ++i) act(out[i]);
+        const auto run = [&](int first, int end) {
+            for (int i = first; i < end; ++i) act(out[i]);
         };
-        if (table.n_sides != 1 && table.n_sides != 2) return run(0, tables.n_twists);
-        const auto [low, high] = std::minmax(table.bodies[0], table.bodies[table.n_sides - 1]);
-        run(tables.bodies[low].first, tables.bodies[low].dofs);
-        if (high != low) run(tables.bodies[high].first, tables.bodies[high].dofs);
+        if (!are_few) return run(0, tables.n_twists);
+        run(tables.bodies[low].first, end_of(low));
+        if (high != low) run(tables.bodies[high].first, end_of(high));
     };
     double sum = 0;
     for_entries([&](double entry) { sum += entry * entry; });

@@ -35,6 +35,7 @@ public:
     Outcome factorise(BlockMatrix& matrix) override;
     void solve(std::span<double> x) const override { solve(x, false); }
     void solve_transposed(std::span<double> x) const override { solve(x, true); }
+    void solve_closing(std::span<const double> rows, std::span<double> ends) const override;
     LinearReport report() const override;
 
 private:

@@ -17,13 +17,13 @@ namespace livens::inline spacetime_internal {
 namespace {
 
 /// Columns of twists in lengths of the model and radians, of all bodies.
-DenseMatrix in_lengths(const ModelTables& tables, const DenseMatrix& twists, int first, int n)
+DenseMatrix in_lengths(const ModelTables& tables, const DenseMatrix& twists)
 {
-    DenseMatrix scaled(twists.rows, n);
-    for (int j = 0; j < n; ++j)
+    DenseMatrix scaled(twists.rows, twists.cols);
+    for (int j = 0; j < twists.cols; ++j)
         for (const auto& body : tables.bodies)
             for (int i = 0; i < body.dofs; ++i)
-                scaled(body.first + i, j) = twists(body.first + i, first + j) / (i < 3 ? tables.length : 1);
+                scaled(body.first + i, j) = twists(body.first + i, j) / (i < 3 ? tables.length : 1);
     return scaled;
 }
 
@@ -42,8 +42,7 @@ double largest_motion(const ModelTables& tables, const std::vector<double>& twis
 double response(const ModelTables& tables, const FlowDerivative& flow)
 {
     const int f = tables.freedoms();
-    const DenseMatrix start = in_lengths(tables, flow.start, f, f),
-                      arrival = in_lengths(tables, flow.arrival, f, f);
+    const DenseMatrix start = in_lengths(tables, flow.start), arrival = in_lengths(tables, flow.arrival);
     const SymmetricSpectrum found =
         generalised_spectrum(transposed_product(arrival, arrival), transposed_product(start, start));
     if (!found.is_found) return 0;

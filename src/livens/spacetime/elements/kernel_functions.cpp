@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/spacetime/elements/kernel_functions.h"
 
-#include "livens/spacetime/instructions.h"
+#include "livens/solvers/instructions.h"
 
 namespace livens::lanes {
 

@@ -75,20 +75,16 @@ FlowDerivative flow_derivative(const ModelTables& tables, const TimeMesh& mesh, 
     system.form_tangent(*whole);
     whole->close_with(rows_of_a_state(f), DenseMatrix());
     if (!whole->factorise()) return {};
-    const auto n_rows = static_cast<std::size_t>(layout.n_nodes()) * static_cast<std::size_t>(f);
-    std::vector<double> rows(n_rows + 2 * static_cast<std::size_t>(f)),
-        y(static_cast<std::size_t>(layout.n_nodes() * n + 2 * f));
-    FlowDerivative flow{DenseMatrix(n, 2 * f), DenseMatrix(n, 2 * f)};
-    for (int j = 0; j < 2 * f; ++j) {
-        std::ranges::fill(rows, 0.0);
-        rows[n_rows + static_cast<std::size_t>(j)] = 1;
-        whole->solve(rows, nullptr, y.data());
-        const int last = layout.n_nodes() - 1;
-        tables.bodies.to_twist(system.nodes().maps(last), y.data() + static_cast<std::ptrdiff_t>(last) * n,
-                               flow.arrival.column(j).data());
+    const int last = layout.n_nodes() - 1;
+    FlowDerivative flow{DenseMatrix(n, f), DenseMatrix(n, f)};
+    for (int j = 0; j < f; ++j) {
+        std::vector<double> conditions(2 * static_cast<std::size_t>(f), 0.0),
+            own(static_cast<std::size_t>(n), 0.0), y(own);
+        conditions[static_cast<std::size_t>(f + j)] = 1;
+        whole->last_twist(conditions, y.data());
+        tables.bodies.to_twist(system.nodes().maps(last), y.data(), flow.arrival.column(j).data());
         // a momentum along a free motion is a velocity along it
-        std::vector<double> own(static_cast<std::size_t>(n), 0.0);
-        own[tables.rank + j % f] = 1;
+        own[tables.rank + j] = 1;
         system.nodes().basis(0).q.apply(own.data());
         tables.bodies.to_twist(system.nodes().maps(0), own.data(), flow.start.column(j).data());
     }

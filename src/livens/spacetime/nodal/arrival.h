@@ -12,14 +12,14 @@ struct ModelTables;
 
 namespace livens::inline spacetime_internal {
 
-/// Derivatives of the state at the end of a solved motion by that at its start: columns are the f free
-/// motions at the start, with momenta held in world axes, then momenta along these.
+/// Derivatives of the places at the end of a solved motion by velocities at its start, along its f free
+/// motions there.
 ///
-/// shape    n_twists x 2 f each
+/// shape    n_twists x f each
 /// unit     twists about the centres of mass (m, rad) by scaled free motions
 /// empty    the elements have no regular tangent
 struct FlowDerivative {
-    DenseMatrix start;     ///< twists, then velocities, of a unit of each at the start
+    DenseMatrix start;     ///< velocities of a unit of each
     DenseMatrix arrival;   ///< twists that it makes at the end
 };
 FlowDerivative flow_derivative(const ModelTables& tables, const TimeMesh& mesh, const ElementRule& rule,

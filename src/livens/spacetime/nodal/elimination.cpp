@@ -11,6 +11,7 @@
 #include "livens/dynamics/instant/instant.h"
 #include "livens/solvers/dense.h"
 #include "livens/solvers/patience.h"
+#include "livens/solvers/short_rows.h"
 #include "livens/spacetime/elements/kernel_functions.h"
 #include "livens/spacetime/nodal/carried.h"
 #include "livens/spacetime/nodal/nodes.h"
@@ -66,11 +67,11 @@ public:
         e_ = e;
         A_ = A;
         B_ = B;
-        std::fill(product_.begin(), product_.end(), 0.0);
     }
     void mass(int body, double factor, const double* H) override;
     void block(int body_i, int body_j, const double* values) override;
     void close() override;
+    bool take_transposed(int e, int A, int B) override;
     void close_with(std::span<const double> closing, const DenseMatrix& by_numbers) override;
     void stand_at(const ModelTables& tables, const Nodes& nodes) override
     {
@@ -80,6 +81,12 @@ public:
     void carry(double* rows) const override { to_factorised(rows); }
     bool factorise() override { return f_ == 0 || solver_->factorise(matrix_) == Outcome::regular; }
     void solve(std::span<const double> rows, const double* range, double* y) override;
+    void last_twist(std::span<const double> conditions, double* y) override
+    {
+        std::vector<double> ends(static_cast<std::size_t>(2 * f_ + structure_.n_border));
+        solver_->solve_closing(conditions, ends);
+        to_current(ends.data() + f_, structure_.n_nodes() - 1, y);
+    }
     void describe(SolveReport& report) const override
     {
         if (f_ > 0 && structure_.n_elements() > 1) report.factor_entries = solver_->report().factor_entries;
@@ -130,7 +137,7 @@ void NullSpaces::mass(int body, double factor, const double* H)
     const double* __restrict z = null_space(B_, body);
     const int first = tables_.bodies[body].first, f = f_;
     double* __restrict v = product_.data() + first * f;
-    for (int j = 0; j < 3 * f; ++j) v[j] += factor * z[j];
+    for (int j = 0; j < 3 * f; ++j) v[j] = factor * z[j];
     if (tables_.bodies[body].dofs == 3) return;
     const double* __restrict z0 = z + 3 * f;
     const double* __restrict z1 = z + 4 * f;
@@ -138,7 +145,7 @@ void NullSpaces::mass(int body, double factor, const double* H)
     for (int i = 0; i < 3; ++i) {
         const double a = factor * H[i], b = factor * H[i + 3], c = factor * H[i + 6];
         double* __restrict w = v + (3 + i) * f;
-        for (int j = 0; j < f; ++j) w[j] += a * z0[j] + b * z1[j] + c * z2[j];
+        for (int j = 0; j < f; ++j) w[j] = a * z0[j] + b * z1[j] + c * z2[j];
     }
 }
 
@@ -166,6 +173,16 @@ void NullSpaces::close()
     for (int r = 0; r < f_; ++r) std::fill_n(block + r * stride, f_, 0.0);
     lanes::functions(4)->blocks->add_from_left(z_.data() + place(A_), {tables_.n_twists, f_, 1},
                                                product_.data(), f_, block, stride);
+}
+
+bool NullSpaces::take_transposed(int e, int A, int B)
+{
+    const int stride = f_ > 0 ? matrix_.stride(e) : 0;
+    const double* from = f_ > 0 ? matrix_.block(e, place_of_row(*layout_, B), A) : nullptr;
+    double* to = f_ > 0 ? matrix_.block(e, place_of_row(*layout_, A), B) : nullptr;
+    for (int i = 0; i < f_; ++i)
+        for (int j = 0; j < f_; ++j) to[i * stride + j] = from[j * stride + i];
+    return true;
 }
 
 /// P(0) is added at the first node, P(T) taken off at the last.
@@ -199,6 +216,7 @@ void NullSpaces::close_with(std::span<const double> closing, const DenseMatrix& 
 void NullSpaces::to_factorised(double* x) const
 {
     const int n = tables_.n_twists, k = tables_.rank;
+    const RowFunctions& rows = row_functions();
     std::vector<double> row(static_cast<std::size_t>(n));
     for (int A = 0; A < structure_.n_nodes(); ++A) {
         if (!layout_->is_active(A)) continue;
@@ -208,8 +226,7 @@ void NullSpaces::to_factorised(double* x) const
         carry_rows({*bodies_, nodes_->maps(A)}, {tables_.bodies, maps_at(A)}, row.data());
         std::fill_n(x, f_, 0.0);
         const double* z = z_.data() + place(A);
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < f_; ++j) x[j] += z[i * f_ + j] * row[i];
+        for (int i = 0; i < n; ++i) subtract_scaled(rows, x, -row[i], z + i * f_, f_);
         x += f_;
     }
 }
@@ -219,10 +236,8 @@ void NullSpaces::to_factorised(double* x) const
 void NullSpaces::to_current(const double* x, int A, double* y) const
 {
     const double* z = z_.data() + place(A);
-    for (int i = 0; i < tables_.n_twists; ++i) {
-        y[i] = 0;
-        for (int j = 0; j < f_; ++j) y[i] += z[i * f_ + j] * x[j];
-    }
+    const RowFunctions& rows = row_functions();
+    for (int i = 0; i < tables_.n_twists; ++i) y[i] = inner(rows, z + i * f_, x, f_);
     carry_twists({tables_.bodies, maps_at(A)}, {*bodies_, nodes_->maps(A)}, y);
 }
 

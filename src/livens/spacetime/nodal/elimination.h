@@ -33,6 +33,8 @@ public:
     /// for; with conditions by component their rows follow, and in y momenta along free motions, then
     /// numbers.
     virtual void solve(std::span<const double> rows, const double* range, double* y) = 0;
+    /// y <- the scaled twist of the last node, which is unknown, that conditions by component alone ask for.
+    virtual void last_twist(std::span<const double> /*conditions*/, double* /*y*/) {}
     /// Whether solve() can take violations of the constraints in; else they are taken off before. `range`
     /// then holds the part of y across the null space at node 1 (in the basis), or null.
     virtual bool takes_constraints() const { return false; }

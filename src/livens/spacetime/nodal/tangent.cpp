@@ -25,6 +25,8 @@ Tangent::Tangent(const ModelTables& tables, const ElementRule& rule) : tables_(t
 void Tangent::form(const WindowLayout& layout, const Nodes& nodes, const NodalRows& rows, TangentSink& sink)
 {
     double H[9] = {};
+    // of mass alone, as the elements' own numbers are
+    const bool is_symmetric = tables_.loads.with_tangent.empty() && rule_.points == Points::lobatto;
     load_roundings_.assign(static_cast<std::size_t>(layout.n_elements()), 0.0);
     for (int e = 0; e < layout.n_elements(); ++e) {
         Patience::ask();
@@ -35,6 +37,9 @@ void Tangent::form(const WindowLayout& layout, const Nodes& nodes, const NodalRo
             for (int b = 0; b < rule_.size(); ++b) {
                 const int B = e * rule_.degree + b;
                 if (!layout.is_unknown(B)) continue;
+                if (b < a && is_symmetric && layout.is_unknown(A) && layout.is_active(B) &&
+                    sink.take_transposed(e, A, B))
+                    continue;
                 sink.open(e, A, B);
                 const double factor = rule_.k[a * rule_.size() + b] / layout.h(e);
                 for (int body = 0; body < tables_.n_bodies(); ++body) {

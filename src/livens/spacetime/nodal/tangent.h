@@ -13,8 +13,8 @@ namespace livens::inline spacetime_internal {
 class Nodes;
 class NodalRows;
 
-/// Takes a tangent pair by pair of nodes A, B that share element e: open(), then mass() and block() in any
-/// number, then close(). Where two elements share both nodes their blocks add up.
+/// Takes a tangent pair by pair of nodes A, B that share element e: open(), then mass() of every body,
+/// block() in any number, then close(). Where two elements share both nodes their blocks add up.
 class TangentSink {
 public:
     virtual ~TangentSink() = default;
@@ -24,6 +24,9 @@ public:
     /// NodalRows of body i by twists of body j: 6 x 6 row by row.
     virtual void block(int body_i, int body_j, const double* values) = 0;
     virtual void close() = 0;
+    /// In place of all these, where (A, B) is the transpose of (B, A), which was closed before; false: it is
+    /// not taken.
+    virtual bool take_transposed(int /*e*/, int /*A*/, int /*B*/) { return false; }
 };
 
 /// d(rows at active nodes)/d(twists of unknown nodes), rows and twists scaled by the maps of their nodes,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which set of vector instructions the kernels use: theory.md, "Without a tangent", Registers. It decides
 // last bits, so it is chosen once for the program, or named by LIVENS_SIMD.
-#include "livens/spacetime/instructions.h"
+#include "livens/solvers/instructions.h"
 
 #include <array>
 #include <atomic>

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sums over short rows of dense matrices.
+// Sums over short rows of dense matrices, and how large these are.
 #pragma once
 
 #include <cstddef>
+
+#include "livens/solvers/row_functions.h"
 
 namespace livens::inline solvers_internal {
 
@@ -28,6 +30,20 @@ inline void subtract_scaled(double* __restrict y, double a, const double* __rest
         y[i + 1] -= a * x[i + 1];
     }
     if (i < n) y[i] -= a * x[i];
+}
+
+/// Shorter rows are done where they stand.
+inline constexpr int few = 8;
+
+inline double inner(const RowFunctions& rows, const double* x, const double* y, int n)
+{
+    return n < few ? inner(x, y, n) : rows.inner(x, y, n);
+}
+
+inline void subtract_scaled(const RowFunctions& rows, double* __restrict y, double a,
+                            const double* __restrict x, int n)
+{
+    n < few ? subtract_scaled(y, a, x, n) : rows.subtract_scaled(y, a, x, n);
 }
 
 inline std::size_t count(int rows, int cols)

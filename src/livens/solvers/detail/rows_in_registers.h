@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sums over rows on registers of LIVENS_ROW_REGISTER doubles. All names are the source's own: no two sources
+// may share code through the linker.
+#pragma once
+
+#include "livens/solvers/row_functions.h"
+
+namespace livens::inline solvers_internal {
+namespace {
+
+constexpr int held = LIVENS_ROW_REGISTER;
+typedef double Held __attribute__((vector_size(8 * held), may_alias, aligned(8)));
+
+inline Held at(const double* x) { return *reinterpret_cast<const Held*>(x); }
+inline Held& at(double* x) { return *reinterpret_cast<Held*>(x); }
+
+double inner(const double* x, const double* y, int n)
+{
+    Held s0{}, s1{};   // so that two products are in flight
+    int i = 0;
+    for (; i + 2 * held <= n; i += 2 * held) {
+        s0 += at(x + i) * at(y + i);
+        s1 += at(x + i + held) * at(y + i + held);
+    }
+    s0 += s1;
+    if (i + held <= n) {
+        s0 += at(x + i) * at(y + i);
+        i += held;
+    }
+    double sum = 0;
+    for (int k = 0; k < held; ++k) sum += s0[k];
+    for (; i < n; ++i) sum += x[i] * y[i];
+    return sum;
+}
+
+void subtract_scaled(double* __restrict y, double a, const double* __restrict x, int n)
+{
+    int i = 0;
+    for (; i + held <= n; i += held) at(y + i) -= a * at(x + i);
+    for (; i < n; ++i) y[i] -= a * x[i];
+}
+
+void subtract_pair(double* __restrict y, double a, const double* __restrict u, double b,
+                   const double* __restrict v, int n)
+{
+    int i = 0;
+    for (; i + held <= n; i += held) at(y + i) -= a * at(u + i) + b * at(v + i);
+    for (; i < n; ++i) y[i] -= a * u[i] + b * v[i];
+}
+
+constexpr RowFunctions in_registers{inner, subtract_scaled, subtract_pair};
+
+}   // namespace
+}   // namespace livens::inline solvers_internal

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sums over rows in registers of any width are those over their numbers one by one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "block_systems.h"
+#include "livens/solvers/instructions.h"
+#include "livens/solvers/row_functions.h"
+
+namespace livens {
+namespace {
+
+struct Sums {
+    double inner = 0;
+    std::vector<double> scaled, pair;
+};
+
+Sums by_numbers(const std::vector<double>& x, const std::vector<double>& y)
+{
+    Sums sums{0, y, y};
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        sums.inner += x[i] * y[i];
+        sums.scaled[i] -= 0.3 * x[i];
+        sums.pair[i] -= 0.3 * x[i] - 0.7 * y[i];
+    }
+    return sums;
+}
+
+void expect_as_numbers(const RowFunctions& rows)
+{
+    for (int n = 0; n <= 41; ++n) {
+        const std::vector<double> x = Random(3).values(n + 1), y = Random(4).values(n + 1);
+        const std::vector<double> x_used(x.begin(), x.end() - 1), y_used(y.begin(), y.end() - 1);
+        const Sums expected = by_numbers(x_used, y_used);
+        EXPECT_NEAR(rows.inner(x.data(), y.data(), n), expected.inner, 1e-14) << n;
+        std::vector<double> scaled = y, pair = y;
+        rows.subtract_scaled(scaled.data(), 0.3, x.data(), n);
+        rows.subtract_pair(pair.data(), 0.3, x.data(), -0.7, y.data(), n);
+        for (int i = 0; i < n; ++i) {
+            EXPECT_NEAR(scaled[i], expected.scaled[i], 1e-15) << n;
+            EXPECT_NEAR(pair[i], expected.pair[i], 1e-15) << n;
+        }
+        EXPECT_EQ(scaled[n], y[n]) << "what is behind is left alone";
+        EXPECT_EQ(pair[n], y[n]);
+    }
+}
+
+TEST(RowFunctions, AreSumsOverNumbers)
+{
+    expect_as_numbers(rows_sse2());
+    if (has(Instructions::avx2)) expect_as_numbers(rows_avx2());
+}
+
+TEST(RowFunctions, AreThoseOfTheInstructionsInUse)
+{
+    const Instructions before = instructions();
+    ASSERT_TRUE(use_instructions(Instructions::sse2));
+    EXPECT_EQ(&row_functions(), &rows_sse2());
+    if (use_instructions(Instructions::avx2)) {
+        EXPECT_EQ(&row_functions(), &rows_avx2());
+    }
+    use_instructions(before);
+}
+
+}   // namespace
+}   // namespace livens
