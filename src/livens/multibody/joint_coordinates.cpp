@@ -201,25 +201,25 @@ SmoothFunction::Value coordinate_at(CoordinateKind kind, const Point& q)
     return rotation_angle_at(q);
 }
 
+/// Wherever the bodies are.
+static bool is_always_known(CoordinateKind kind)
+{
+    return kind == CoordinateKind::displacement || kind == CoordinateKind::angle;
+}
+
 bool is_known(CoordinateKind kind, const Point& q)
 {
     constexpr double least_square = 1e-4;   // of a cosine: 0.6 degrees
-    switch (kind) {
-    case CoordinateKind::displacement:
-    case CoordinateKind::angle:
-        return true;
-    case CoordinateKind::outer_angle:
-        return q[0] * q[0] + q[1] * q[1] >= least_square;
-    case CoordinateKind::arc_sine:
-        return (1 - q[0]) * (1 + q[0]) >= least_square;
-    case CoordinateKind::rotation_component:
-    case CoordinateKind::rotation_angle:
-        break;
-    }
+    if (is_always_known(kind)) return true;
+    if (kind == CoordinateKind::outer_angle) return q[0] * q[0] + q[1] * q[1] >= least_square;
+    if (kind == CoordinateKind::arc_sine) return (1 - q[0]) * (1 + q[0]) >= least_square;
     return rotation_angle_at(q).value <= widest_rotation;
 }
 
-bool is_known(const JointCoordinate& q, const Configurations& X) { return is_known(q.kind, point_of(q, X)); }
+bool is_known(const JointCoordinate& q, const Configurations& X)
+{
+    return is_always_known(q.kind) || is_known(q.kind, point_of(q, X));
+}
 
 double coordinate_value(const JointCoordinate& q, const Configurations& X)
 {

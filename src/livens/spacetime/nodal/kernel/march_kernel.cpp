@@ -61,8 +61,8 @@ struct Shrinking {
         rows_rounding = rounding_of_rows * (of_rows + slopes.loads.terms());
         joints_rounding = rounding_of_rows * slopes.joints.terms();
     }
-    /// False: there is no hope.
-    bool take(const lanes::Sizes& sizes, double rounding, double sums)
+    /// False: there is no hope. `sums()`, of which rows round, is asked where it decides.
+    bool take(const lanes::Sizes& sizes, double rounding, const auto& sums)
     {
         const double motion = std::clamp(sizes.motion, 1e-6, 1.0), allowed = tolerance * motion,
                      before = step;
@@ -78,14 +78,16 @@ struct Shrinking {
         const double rate =
             has_slopes ? std::max({contraction, contraction_before, least_rate}) : contraction;
         // steps that were seen to shrink, and shrink no more, have met their rounding
-        const bool is_noise =
-            step <= std::max(allowed, rounding * motion) || sizes.rows <= rows_rounding ||
-            (step <= rounding_of_places && sizes.rows <= std::max(joints_rounding, rounding_of_rows * sums));
+        const auto is_noise = [&] {
+            return step <= std::max(allowed, rounding * motion) || sizes.rows <= rows_rounding ||
+                   (step <= rounding_of_places &&
+                    sizes.rows <= std::max(joints_rounding, rounding_of_rows * sums()));
+        };
         const bool is_met = rate < 1 && step * rate <= share_of_tolerance * allowed * (1 - rate);
         // what shrinks slowly, but as it did, has not met it yet
         const bool is_stuck =
             is_slow && (has_slopes || is_hopeless || contraction > worse * contraction_before);
-        is_done = (is_stuck && has_contracted && is_noise) || (is_met && !(is_slow && has_slopes));
+        is_done = (is_stuck && has_contracted && is_noise()) || (is_met && !(is_slow && has_slopes));
         is_rounded = is_done && is_slow && step > allowed;
         has_contracted = has_contracted || !is_slow;
         n_slow += is_slow ? 1 : 0;
@@ -233,8 +235,7 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
         if (!std::isfinite(sizes.finite)) return false;
         moved += sizes.step;
         const double noise = std::clamp(rounding_by_pivot / pivot, least_rounding, most_rounding);
-        const double sums =
-            sizes.step <= rounding_of_places ? lane_rule_.largest_of_sums(nodes.increments) : 0;
+        const auto sums = [&] { return lane_rule_.largest_of_sums(nodes.increments); };
         const bool goes_on =
             is_accelerated ? progress.approach(left, sizes) : progress.take(sizes, noise, sums);
         if (!goes_on && kind == Steps::free) choice_.gave_up(progress.contraction, layout.h(0));
