@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "livens/dynamics/start/consistent_start.h"
 #include "livens/multibody/body.h"
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/march/components.h"
@@ -20,7 +21,8 @@ namespace {
 constexpr double change = 1e-2;      // of a number or its scale
 constexpr double no_change = 1e-9;   // of what a condition is compared with
 
-/// The guess at the start, with rates that nobody chose: at rest a damper would show nothing.
+/// The guess at the start, with rates that nobody chose: at rest a damper would show nothing. The joints have
+/// them already: what a projection changes depends on masses.
 State moving(const NumberedProblem& problem)
 {
     State state = problem.ends().start;
@@ -35,7 +37,8 @@ State moving(const NumberedProblem& problem)
         const Vector3 w = (1 / problem.model().length()) * Vector3{v[1], v[2], v[0]};
         state.V[b] += rate(state.X[b], v, w);
     }
-    return state;
+    const TriedStart tried = try_consistent_start(problem.model(), state, StartPolicy::project);
+    return tried.closed ? tried.closed->start : state;
 }
 
 /// Empty: none begins there.

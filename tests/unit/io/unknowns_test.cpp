@@ -277,20 +277,24 @@ TEST(UnknownsOfFiles, ThatNothingShowsAreToldWhereTheyStand)
 {
     std::string text = replaced(pendulum, "mass = 1", "mass = { unknown = 1, low = 0.1 }");
     text = replaced(text, "damping = { unknown = 0.3, low = 0 }", "damping = 0");
-    text = replaced(text, "inertia = [0.1, 0.1, 0.1]", "inertia = [1e-14, 1e-14, 1e-14]");
-    const ScenarioResult result = read(text);
-    ASSERT_TRUE(result.scenario) << shown(result);
-    try {
-        solved(*result.scenario);
-        FAIL() << "solved";
-    } catch (const InputError& error) {
-        EXPECT_EQ(error.complaint().code, "unknown-unseen");
-        const Diagnostic told = diagnostic_of(*result.scenario, error.complaint());
-        EXPECT_EQ(told.severity, Severity::error);
-        EXPECT_EQ(told.code, "unknown-unseen");
-        EXPECT_EQ(told.file, "test.toml");
-        EXPECT_EQ(told.line, 17);
-        EXPECT_EQ(told.column, 8);
+    const std::string light = replaced(text, "inertia = [0.1, 0.1, 0.1]", "inertia = [1e-14, 1e-14, 1e-14]");
+    // nor does a body of its own inertia where nothing pulls it: it turns as it was made to
+    const std::string still = replaced(text, "gravity = [0, 0, -9.81]", "gravity = [0, 0, 0]");
+    for (const std::string& wrong : {light, still}) {
+        const ScenarioResult result = read(wrong);
+        ASSERT_TRUE(result.scenario) << shown(result);
+        try {
+            solved(*result.scenario);
+            FAIL() << "solved";
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.complaint().code, "unknown-unseen");
+            const Diagnostic told = diagnostic_of(*result.scenario, error.complaint());
+            EXPECT_EQ(told.severity, Severity::error);
+            EXPECT_EQ(told.code, "unknown-unseen");
+            EXPECT_EQ(told.file, "test.toml");
+            EXPECT_EQ(told.line, 17);
+            EXPECT_EQ(told.column, 8);
+        }
     }
 }
 
