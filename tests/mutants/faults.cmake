@@ -1834,3 +1834,51 @@ livens_mutant(NAME exchanges_left_out
               NEW [[reflections_[j].reach = end;]]
               TESTS_OF unit_solvers
               MUST_FAIL OrthogonalBasis.LeavesOutNothingButZeros)
+
+# A block of two nodes taken as it stands, not transposed: right for one freedom.
+livens_mutant(NAME blocks_not_transposed
+              FILE spacetime/nodal/elimination.cpp
+              OLD [[to[i * stride + j] = from[j * stride + i];]]
+              NEW [[to[i * stride + j] = from[i * stride + j];]]
+              TESTS_OF convergence
+              MUST_FAIL LobattoEnds.EveryRateNearbyFindsTheMotion)
+
+# Halves of tangents under loads, too, whose other halves differ.
+livens_mutant(NAME halves_under_loads
+              FILE spacetime/nodal/tangent.cpp
+              OLD [[tables_.loads.with_tangent.empty() && rule_.points == Points::lobatto;]]
+              NEW [[rule_.points == Points::lobatto;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Lobatto/TangentOf.MatchesDifferencesWithEveryKindOfTerm/1)
+
+# What joints make of two bodies passed on before the last row of the last joint.
+livens_mutant(NAME last_crossing_forgotten
+              FILE spacetime/nodal/tangent.cpp
+              OLD [[    crossing.pass_on();]]
+              NEW [[    ;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Lobatto/TangentOf.MatchesDifferencesWithEveryKindOfTerm/1)
+
+# Numbers behind the last full register forgotten.
+livens_mutant(NAME rows_in_full_registers_alone
+              FILE solvers/detail/rows_in_registers.h
+              OLD [[for (; i < n; ++i) y[i] -= a * x[i];]]
+              NEW [[;]]
+              TESTS_OF unit_solvers
+              MUST_FAIL RowFunctions.AreSumsOverNumbers)
+
+# Conditions alone asked in the rows of the last balances.
+livens_mutant(NAME conditions_before_their_rows
+              FILE solvers/chain_solution.cpp
+              OLD [[work_.front.insert(work_.front.end(), rows.begin(), rows.end());]]
+              NEW [[work_.front.insert(work_.front.begin(), rows.begin(), rows.end());]]
+              TESTS_OF unit_solvers
+              MUST_FAIL ChainSolver.ConditionsAloneGiveTheEnds)
+
+# Rates that joints do not have are projected by masses, which then seem to be seen.
+livens_mutant(NAME masses_seen_by_projection
+              FILE spacetime/unseen_number.cpp
+              OLD [[return tried.closed ? tried.closed->start : state;]]
+              NEW [[return state;]]
+              TESTS_OF unit_io
+              MUST_FAIL UnknownsOfFiles.ThatNothingShowsAreToldWhereTheyStand)

@@ -11,6 +11,13 @@
 
 namespace livens {
 
+namespace {
+
+/// A column of so many numbers is gone through by the places of those that are not zero, if they are few.
+bool goes_by_places(int used, int numbers) { return (numbers < 16 ? 2 : 4) * used <= numbers; }
+
+}   // namespace
+
 void OrthogonalBasis::resize(int n, int most)
 {
     n_ = n;
@@ -57,7 +64,7 @@ void OrthogonalBasis::reflect(int j, bool keep_sign, int behind)
     reflections_[j].end = end;
     reflections_[j].reach = std::max(end, reflections_[j].lead + 1);
     reflections_[j].all_reach = std::max(reflections_[j].reach, j > 0 ? reflections_[j - 1].all_reach : 0);
-    reflections_[j].used = 2 * used <= end - j ? used : -1;
+    reflections_[j].used = goes_by_places(used, end - j) ? used : -1;
     const double head = v[j];
     const double length = std::sqrt(head * head + tail);
     // the kept sign would cancel where head has come close to it
@@ -88,10 +95,11 @@ inline void OrthogonalBasis::reflect_only(int j, double* x, const RowFunctions& 
     const int used = reflections_[j].used;
     if (used < 0) {
         const int m = reflections_[j].end - j - 1;
-        const double t = reflections_[j].beta * (x[j] + inner(rows, v + j + 1, x + j + 1, m));
+        if (m >= few) return rows.reflect(x + j, x + j + 1, reflections_[j].beta, v + j + 1, m);
+        const double t = reflections_[j].beta * (x[j] + inner(v + j + 1, x + j + 1, m));
         if (t == 0) return;
         x[j] -= t;
-        subtract_scaled(rows, x + j + 1, t, v + j + 1, m);
+        subtract_scaled(x + j + 1, t, v + j + 1, m);
         return;
     }
     const int* places = places_.data() + count(n_, j);

@@ -9,6 +9,8 @@ struct RowFunctions {
     double (*inner)(const double* x, const double* y, int n);
     /// y -= a x
     void (*subtract_scaled)(double* y, double a, const double* x, int n);
+    /// head and x <- (1 - beta [1; v] [1; v]^T) of them
+    void (*reflect)(double* head, double* x, double beta, const double* v, int n);
     /// y -= a u + b v
     void (*subtract_pair)(double* y, double a, const double* u, double b, const double* v, int n);
 };

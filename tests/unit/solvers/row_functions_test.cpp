@@ -42,6 +42,14 @@ void expect_as_numbers(const RowFunctions& rows)
             EXPECT_NEAR(scaled[i], expected.scaled[i], 1e-15) << n;
             EXPECT_NEAR(pair[i], expected.pair[i], 1e-15) << n;
         }
+        // I - beta w w^T, w = [1; x], of [0.5; y]
+        double head = 0.5;
+        std::vector<double> reflected = y;
+        rows.reflect(&head, reflected.data(), 0.2, x.data(), n);
+        const double t = 0.2 * (0.5 + expected.inner);
+        EXPECT_NEAR(head, 0.5 - t, 1e-14) << n;
+        for (int i = 0; i < n; ++i) EXPECT_NEAR(reflected[i], y[i] - t * x[i], 1e-14) << n;
+        EXPECT_EQ(reflected[n], y[n]);
         EXPECT_EQ(scaled[n], y[n]) << "what is behind is left alone";
         EXPECT_EQ(pair[n], y[n]);
     }

@@ -40,6 +40,14 @@ void subtract_scaled(double* __restrict y, double a, const double* __restrict x,
     for (; i < n; ++i) y[i] -= a * x[i];
 }
 
+void reflect(double* head, double* __restrict x, double beta, const double* __restrict v, int n)
+{
+    const double t = beta * (*head + inner(v, x, n));
+    if (t == 0) return;   // what is zero stays so, in its sign
+    *head -= t;
+    subtract_scaled(x, t, v, n);
+}
+
 void subtract_pair(double* __restrict y, double a, const double* __restrict u, double b,
                    const double* __restrict v, int n)
 {
@@ -48,7 +56,7 @@ void subtract_pair(double* __restrict y, double a, const double* __restrict u, d
     for (; i < n; ++i) y[i] -= a * u[i] + b * v[i];
 }
 
-constexpr RowFunctions in_registers{inner, subtract_scaled, subtract_pair};
+constexpr RowFunctions in_registers{inner, subtract_scaled, reflect, subtract_pair};
 
 }   // namespace
 }   // namespace livens::inline solvers_internal

@@ -5,6 +5,7 @@
 #include "livens/spacetime/nodal/tangent.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "livens/dynamics/rows/twist.h"
@@ -14,6 +15,46 @@
 #include "livens/spacetime/nodal/rows.h"
 
 namespace livens {
+
+namespace {
+
+/// Blocks of one body's rows by another one's twists at a node, both ways, until others come.
+class Crossing {
+public:
+    Crossing(const ModelTables& tables, const Nodes& nodes, int A, TangentSink& sink)
+        : tables_(tables), nodes_(nodes), A_(A), sink_(sink)
+    {}
+    /// The block of body i by body j, to be added to.
+    double* of(int i, int j)
+    {
+        if (std::minmax(i, j) != std::minmax(bodies_[0], bodies_[1])) {
+            pass_on();
+            bodies_ = {i, j};
+        }
+        return blocks_[i == bodies_[0] ? 0 : 1].data();
+    }
+    void pass_on()
+    {
+        double scaled[36];
+        for (int k = 0; k < 2 && bodies_[0] >= 0; ++k) {
+            const int i = bodies_[k], j = bodies_[1 - k];
+            scale_block(tables_, nodes_.maps(A_), i, nodes_.maps(A_), j, blocks_[k].data(), scaled);
+            sink_.block(i, j, scaled);
+            blocks_[k].fill(0);
+        }
+        bodies_ = {-1, -1};
+    }
+
+private:
+    const ModelTables& tables_;
+    const Nodes& nodes_;
+    int A_;
+    TangentSink& sink_;
+    std::array<int, 2> bodies_{-1, -1};
+    std::array<std::array<double, 36>, 2> blocks_{};
+};
+
+}   // namespace
 
 Tangent::Tangent(const ModelTables& tables, const ElementRule& rule) : tables_(tables), rule_(rule)
 {
@@ -72,10 +113,11 @@ void Tangent::add_node_terms(const Nodes& nodes, const NodalRows& rows, int A, T
     }
 }
 
-/// - W_A sum lambda K: of bodies with themselves into blocks_, the others to the sink.
+/// - W_A sum lambda K: of bodies with themselves into blocks_, the others to the sink, what rows of a joint
+/// make of the same two bodies together.
 void Tangent::add_constraints(const Nodes& nodes, const NodalRows& rows, int A, TangentSink& sink)
 {
-    double cross[36], scaled[36];
+    Crossing crossing{tables_, nodes, A, sink};
     const ConstraintBasis& basis = nodes.basis(A);
     for (int c = 0; c < tables_.rank; ++c) {
         const auto& table = tables_.rows[basis.rows[c]];
@@ -83,8 +125,7 @@ void Tangent::add_constraints(const Nodes& nodes, const NodalRows& rows, int A, 
         for (int r = 0; r < table.n_sides; ++r) {
             for (int s = 0; s < table.n_sides; ++s) {
                 const int i = table.bodies[r], j = table.bodies[s];
-                double* to = r == s ? blocks_.data() + 36 * i : cross;
-                if (r != s) std::fill(cross, cross + 36, 0.0);
+                double* to = r == s ? blocks_.data() + 36 * i : crossing.of(i, j);
                 const double *X_i = nodes.X(A) + 12 * i, *X_j = nodes.X(A) + 12 * j;
                 const double factor = -rows.impulses(A)[c];
                 if (table.is_quadratic)
@@ -93,12 +134,10 @@ void Tangent::add_constraints(const Nodes& nodes, const NodalRows& rows, int A, 
                     add_reduced(factor * constraint_hessian(*table.row, nodes.at(A),
                                                             Configurations(nodes.X(A)), i, j),
                                 X_i, X_j, tables_.bodies[j].dofs, to);
-                if (r == s) continue;
-                scale_block(tables_, nodes.maps(A), i, nodes.maps(A), j, cross, scaled);
-                sink.block(i, j, scaled);
             }
         }
     }
+    crossing.pass_on();
 }
 
 /// dF/dX and dF/dX' of all loads at the load points of an element.
