@@ -11,6 +11,7 @@
 #include "livens/dynamics/rows/twist.h"
 #include "livens/dynamics/rows/twist_blocks.h"
 #include "livens/solvers/patience.h"
+#include "livens/solvers/row_functions.h"
 #include "livens/spacetime/nodal/nodes.h"
 #include "livens/spacetime/nodal/rows.h"
 
@@ -168,6 +169,7 @@ void Tangent::add_loads(const WindowLayout& layout, const Nodes& nodes, int e, i
 {
     const std::size_t n = tables_.loads.with_tangent.size();
     const int A = e * rule_.degree + a, B = e * rule_.degree + b, size = rule_.size();
+    const RowFunctions& sums = row_functions();
     double block[36], scaled[36];
     for (std::size_t l = 0; l < n; ++l) {
         const Load& load = tables_.model->loads()[tables_.loads.with_tangent[l]];
@@ -179,10 +181,15 @@ void Tangent::add_loads(const WindowLayout& layout, const Nodes& nodes, int e, i
                 for (int c = 0; c < rule_.degree; ++c) {
                     const LoadTangent& tangent = load_tangents_[c * n + l];
                     const double w = rule_.loads.weights[c] * rule_.M[c * size + a];
-                    const double by_X = load.depends_on_X ? layout.h(e) * w * rule_.M[c * size + b] : 0.0;
-                    const double by_V = load.depends_on_V ? w * rule_.dM[c * size + b] : 0.0;
-                    for (int k = 0; k < 144; ++k)
-                        K.a[k] += by_X * tangent.X[r][s].a[k] + by_V * tangent.V[r][s].a[k];
+                    const double by_X = layout.h(e) * w * rule_.M[c * size + b],
+                                 by_V = w * rule_.dM[c * size + b];
+                    const double *of_X = tangent.X[r][s].a, *of_V = tangent.V[r][s].a;
+                    if (load.depends_on_X && load.depends_on_V)
+                        sums.subtract_pair(K.a, -by_X, of_X, -by_V, of_V, 144);
+                    else if (load.depends_on_X)
+                        sums.subtract_scaled(K.a, -by_X, of_X, 144);
+                    else if (load.depends_on_V)
+                        sums.subtract_scaled(K.a, -by_V, of_V, 144);
                 }
                 std::fill(block, block + 36, 0.0);
                 add_reduced(K, nodes.X(A) + 12 * i, nodes.X(B) + 12 * j, tables_.bodies[j].dofs, block);
