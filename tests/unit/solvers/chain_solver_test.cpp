@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "block_systems.h"
@@ -301,10 +302,10 @@ TEST(ChainSolver, IsAsGoodAsSparseFactors)
 /// Of conditions alone the ends are had without what is between them.
 TEST(ChainSolver, ConditionsAloneGiveTheEnds)
 {
+    const int f = 3;
     for (const int n : {1, 2, 7})
-        for (const int border : {0, 3}) {
-            const int f = 3;
-            const BlockStructure s = bordered(uniform(n, 2, f), border, 2 * f);
+        for (const auto& [border, n_open] : {std::pair{0, f}, {0, 2 * f}, {3, f}, {3, 2 * f}, {2 * f, 0}}) {
+            const BlockStructure s = bordered(uniform(n, 2, f), border, n_open);
             BlockMatrix matrix;
             matrix.resize(s);
             fill(s, 5, matrix);
