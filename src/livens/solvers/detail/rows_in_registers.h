@@ -5,6 +5,10 @@
 
 #include "livens/solvers/row_functions.h"
 
+#ifndef LIVENS_ROW_REGISTER
+#define LIVENS_ROW_REGISTER 2   // what every processor has, when this header is compiled alone
+#endif
+
 namespace livens::inline solvers_internal {
 namespace {
 
