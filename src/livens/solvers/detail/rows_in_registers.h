@@ -3,6 +3,8 @@
 // may share code through the linker.
 #pragma once
 
+#include <cstring>
+
 #include "livens/solvers/row_functions.h"
 
 #ifndef LIVENS_ROW_REGISTER
@@ -13,10 +15,16 @@ namespace livens::inline solvers_internal {
 namespace {
 
 constexpr int held = LIVENS_ROW_REGISTER;
-typedef double Held __attribute__((vector_size(8 * held), may_alias, aligned(8)));
+typedef double Held __attribute__((vector_size(8 * held)));
 
-inline Held at(const double* x) { return *reinterpret_cast<const Held*>(x); }
-inline Held& at(double* x) { return *reinterpret_cast<Held*>(x); }
+// Copies of bytes, as rows begin wherever a double may: compilers make one move of each.
+inline Held at(const double* x)
+{
+    Held v;
+    std::memcpy(&v, x, sizeof(v));
+    return v;
+}
+inline void put(double* x, Held v) { std::memcpy(x, &v, sizeof(v)); }
 
 double inner(const double* x, const double* y, int n)
 {
@@ -40,7 +48,7 @@ double inner(const double* x, const double* y, int n)
 void subtract_scaled(double* __restrict y, double a, const double* __restrict x, int n)
 {
     int i = 0;
-    for (; i + held <= n; i += held) at(y + i) -= a * at(x + i);
+    for (; i + held <= n; i += held) put(y + i, at(y + i) - a * at(x + i));
     for (; i < n; ++i) y[i] -= a * x[i];
 }
 
@@ -56,7 +64,7 @@ void subtract_pair(double* __restrict y, double a, const double* __restrict u, d
                    const double* __restrict v, int n)
 {
     int i = 0;
-    for (; i + held <= n; i += held) at(y + i) -= a * at(u + i) + b * at(v + i);
+    for (; i + held <= n; i += held) put(y + i, at(y + i) - (a * at(u + i) + b * at(v + i)));
     for (; i < n; ++i) y[i] -= a * u[i] + b * v[i];
 }
 
