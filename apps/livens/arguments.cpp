@@ -174,6 +174,12 @@ void add_solve_command(CLI::App& app, Arguments& a)
                     "number of scenarios solved concurrently; default: one per processor")
         ->check(CLI::Range(1, 1024))
         ->type_name("N");
+    solve
+        .add_option("--threads", given->threads,
+                    "number of threads that share one motion whose elements are solved together; 0: one per "
+                    "processor; default: 1")
+        ->check(CLI::Range(0, 256))
+        ->type_name("N");
     add_choice(solve, "--simd", given->simd, {"sse2", "avx2", "avx512"},
                "instruction set to solve with; default: avx2 if the processor has it, else sse2");
     add_set(solve, a);

@@ -31,6 +31,7 @@ struct SolveArguments {
     std::string guess;    ///< run that motions between both ends begin with; empty: none
     bool force = false;   ///< whatever stands where files go
     int jobs = 0;         ///< scenarios at a time; 0: one for each processor
+    int threads = -1;     ///< of each motion; -1: as the scenario says
     std::string simd;     ///< set of instructions; empty: what LIVENS_SIMD says, else AVX2 if it is there
 };
 int solve_command(const SolveArguments& arguments, const Common& common);

@@ -265,6 +265,7 @@ std::vector<Job> read_jobs(const SolveArguments& arguments, const Common& common
         std::vector<Diagnostic> warnings;
         Scenario scenario = load_scenario(file, common, &warnings);
         if (arguments.roots > 0) scenario.options.roots = arguments.roots;
+        if (arguments.threads >= 0) scenario.options.threads = arguments.threads;
         Places p = places(scenario, arguments);
         for (int i = 0; i + 1 < scenario.options.roots; ++i)
             check_place(root_place(p.output, static_cast<std::size_t>(i)), begins_as_run, arguments.force);

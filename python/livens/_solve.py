@@ -66,7 +66,8 @@ def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, el
         progress: True for a progress line, or a function.
         strict: Whether to raise :class:`SolveError` with the solution so far instead of issuing a warning.
         **options: Options of all methods: ``tolerance``, ``max_iterations``, ``estimate``, ``growth``,
-            ``condition``; ``roots``: how many motions are looked for between both ends.
+            ``condition``; ``roots``: how many motions are looked for between both ends; ``threads``: how many share
+            elements that are solved together.
 
     Returns:
         The solution. If it did not converge or is suspect, ``success`` is False and a :class:`SolveWarning` has

@@ -29,8 +29,9 @@ FLOORS = [
     ["io"],
     ["apps"],
 ]
-# Elements in space are integrated by the rules of time. Witnesses know nothing of what they are compared with.
-ARROWS = {("geometry", "time")}
+# Elements in space are integrated by the rules of time, and loops over them are shared by the threads of solvers.
+# Witnesses know nothing of what they are compared with.
+ARROWS = {("geometry", "time"), ("geometry", "solvers")}
 APART = {("diagnostics", "stepping")}
 # Folders of a room, lowest first: none sees one that comes later. A room's own files are its face, which its folders and
 # their users may see, and which may see them. Folders that are not named here stand beside each other.

@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
-#include <exception>
-#include <mutex>
-#include <system_error>
 #include <thread>
+
+#include "livens/solvers/crew.h"
 
 #if defined(__linux__)
 #include <sys/mman.h>
@@ -36,30 +35,18 @@ void prefer_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::siz
 
 void in_parallel(int n, const std::function<void(int)>& work)
 {
+    const Crew crew(
+        std::min({n, most_threads, std::max(1, static_cast<int>(std::thread::hardware_concurrency()))}));
     std::atomic<int> next{0};
-    std::exception_ptr thrown;
-    std::mutex of_thrown;
-    const auto work_off = [&] {
+    in_shares(Crew::size(), 1, [&](int, int, int) {
+        // One counter for all: whoever is done takes the next part, so uneven parts cost nothing.
         try {
-            // One counter for all: whoever is done takes the next part, so uneven parts cost nothing.
             for (int i = next++; i < n; i = next++) work(i);
         } catch (...) {
             next = n;
-            const std::lock_guard lock(of_thrown);
-            thrown = std::current_exception();
+            throw;
         }
-    };
-    const int wanted =
-        std::min({n, most_threads, std::max(1, static_cast<int>(std::thread::hardware_concurrency()))});
-    {
-        std::vector<std::jthread> threads;
-        try {
-            for (int k = 1; k < wanted; ++k) threads.emplace_back(work_off);
-        } catch (const std::system_error&) {   // fewer do it, too
-        }
-        work_off();
-    }
-    if (thrown) std::rethrow_exception(thrown);
+    });
 }
 
 }   // namespace livens::inline geometry_internal

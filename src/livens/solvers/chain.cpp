@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 
 namespace livens::inline solvers_internal {
@@ -87,6 +88,7 @@ void ChainSolver::shape(int e)
     link.inside.resize(link.r_near + link.r_own + link.r_far, link.n_own,
                        link.n_near + link.n_far + s.n_border + link.p_near + link.p_far);
     link.inside_values.assign(static_cast<std::size_t>(link.n_own), 0.0);
+    link.left_values.assign(static_cast<std::size_t>(std::max(link.inside.n_left(), 0)), 0.0);
     if (is_first) return;
     link.merged.resize(std::max(front(e - 1).n_left(), 0) + std::max(link.inside.n_left(), 0),
                        link.p_near + link.n_near, n_carried_ + link.n_far + s.n_border + link.p_far);
@@ -163,19 +165,21 @@ int ChainSolver::node_inside(const Link& link, int column) const
     return static_cast<int>(after - first_unknown_.begin()) - 1;
 }
 
-bool ChainSolver::condense(int e)
+bool ChainSolver::condense(Link& link, int e)
 {
-    Link& link = links_[static_cast<std::size_t>(e)];
     fill_inside(e);
-    if (link.inside.n_left() < 0) return fail(link.first);
+    link.failed = -1;
+    if (link.inside.n_left() < 0) return false;
     // while pivots are its own rows', nothing that passes is touched
     const int plain = link.n_own + link.n_near + link.n_far + border();
     const double size = link.inside.largest();
-    if (!link.inside.eliminate(link.r_own, plain))
-        return fail(node_inside(link, link.inside.failed_column()));
-    if (link.inside.largest_left() <= most_growth * size) return true;
-    fill_inside(e);
-    return link.inside.reflect() || fail(node_inside(link, link.inside.failed_column()));
+    bool is_done = link.inside.eliminate(link.r_own, plain);
+    if (is_done && link.inside.largest_left() > most_growth * size) {
+        fill_inside(e);
+        is_done = link.inside.reflect();
+    }
+    if (!is_done) link.failed = link.inside.failed_column();
+    return is_done;
 }
 
 bool ChainSolver::merge(int e)
@@ -204,17 +208,25 @@ Outcome ChainSolver::factorise(BlockMatrix& matrix)
     const auto is_finite = [](const Values& values) {
         return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
     };
-    bool is_all = is_finite(matrix_.closing());
-    for (int e = 0; e < n_links(); ++e)
-        is_all = is_all && is_finite(matrix_.storage(e)) && is_finite(matrix_.border_storage(e));
-    if (!is_all) return Outcome::not_finite;
-    for (int e = 0; e < n_links(); ++e) {
-        Patience::ask();
-        Link& link = links_[static_cast<std::size_t>(e)];
+    std::vector<char> is_good(links_.size());
+    for_each_item(n_links(), least_shared_links, [&](int e) {
+        is_good[e] = is_finite(matrix_.storage(e)) && is_finite(matrix_.border_storage(e));
         double size = 0;
         for (const double v : matrix_.storage(e)) size = std::max(size, std::abs(v));
-        link.scale = size > 0 ? size : 1;
-        if (!condense(e) || (e > 0 && !merge(e))) return Outcome::singular;
+        links_[e].scale = size > 0 ? size : 1;
+    });
+    const auto are_all_good = [&] { return std::ranges::all_of(is_good, [](char is) { return is != 0; }); };
+    if (!is_finite(matrix_.closing()) || !are_all_good()) return Outcome::not_finite;
+    for_each_item(n_links(), least_shared_links, [&](int e) {
+        Patience::ask();
+        is_good[e] = condense(links_[e], e);
+    });
+    for (int e = 0; e < n_links(); ++e) {
+        Patience::ask();
+        const Link& link = links_[e];
+        if (is_good[e] && (e == 0 || merge(e))) continue;
+        if (!is_good[e]) singular_node_ = link.failed < 0 ? link.first : node_inside(link, link.failed);
+        return Outcome::singular;
     }
     if (n_links() > 0) {
         if (front(n_links() - 1).n_left() + structure_->n_closing != closing_.n_rows())

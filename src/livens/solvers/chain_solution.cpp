@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "livens/solvers/crew.h"
 #include "livens/solvers/detail/chain.h"
 #include "livens/solvers/short_rows.h"
 
@@ -77,23 +78,36 @@ void ChainSolver::subtract_product(const double* x, double* y, bool is_transpose
     }
 }
 
+/// Right-hand sides of all elements: what their own unknowns have of them, and what is left.
+void ChainSolver::eliminate_inside(const double* x) const
+{
+    in_shares(n_links(), least_shared_links, [&](int, int begin, int end) {
+        Values rows;
+        for (int e = begin; e < end; ++e) {
+            const Link& link = links_[static_cast<std::size_t>(e)];
+            const bool is_last = e + 1 == n_links();
+            const double* from = x + row(link.first);
+            rows.assign(static_cast<std::size_t>(link.inside.n_rows()), 0.0);
+            std::copy_n(from + link.r_near, link.r_own, rows.begin());
+            std::copy_n(from, link.r_near, rows.begin() + link.r_own);
+            // a balance that two elements share is on the right of the later one
+            if (is_last) std::copy_n(from + link.r_near + link.r_own, link.r_far, rows.end() - link.r_far);
+            link.inside.apply(rows.data());
+            std::copy_n(rows.begin(), link.n_own, link.inside_values.begin());
+            std::copy(rows.begin() + link.n_own, rows.end(), link.left_values.begin());
+        }
+    });
+}
+
 /// x, by rows, <- A^-1 x, by unknowns.
 void ChainSolver::apply_inverse(double* x) const
 {
     if (n_links() == 0) return;
+    eliminate_inside(x);
     work_.front.clear();
     for (int e = 0; e < n_links(); ++e) {
         const Link& link = links_[static_cast<std::size_t>(e)];
-        const bool is_last = e + 1 == n_links();
-        const double* from = x + row(link.first);
-        work_.rows.assign(static_cast<std::size_t>(link.inside.n_rows()), 0.0);
-        std::copy_n(from + link.r_near, link.r_own, work_.rows.begin());
-        std::copy_n(from, link.r_near, work_.rows.begin() + link.r_own);
-        // a balance that two elements share is on the right of the later one
-        if (is_last) std::copy_n(from + link.r_near + link.r_own, link.r_far, work_.rows.end() - link.r_far);
-        link.inside.apply(work_.rows.data());
-        std::copy_n(work_.rows.begin(), link.n_own, link.inside_values.begin());
-        work_.front.insert(work_.front.end(), work_.rows.begin() + link.n_own, work_.rows.end());
+        work_.front.insert(work_.front.end(), link.left_values.begin(), link.left_values.end());
         if (e == 0) continue;
         const auto n = static_cast<std::ptrdiff_t>(link.merged_values.size());
         link.merged.apply(work_.front.data());
@@ -105,9 +119,11 @@ void ChainSolver::apply_inverse(double* x) const
     closing_.apply(work_.front.data());
     closing_.solve(work_.front.data(), nullptr);
     substitute_back(x);
+    substitute_inside(x);
 }
 
-/// From what the closing rows gave, which stands in work_.front: carried, far, border.
+/// From what the closing rows gave, which stands in work_.front: carried, far, border. Unknowns between
+/// elements, and what passes there, which takes the place of the rows merged.
 void ChainSolver::substitute_back(double* x) const
 {
     const int b = border(), far = links_.back().n_far;
@@ -116,29 +132,42 @@ void ChainSolver::substitute_back(double* x) const
     std::copy_n(carried + n_carried_, far, x + unknown(links_.back().last));
     std::copy_n(carried, n_carried_, x);
     work_.passed.clear();   // at the far end
-    for (int e = n_links() - 1; e >= 0; --e) {
+    for (int e = n_links() - 1; e > 0; --e) {
         const Link& link = links_[static_cast<std::size_t>(e)];
         const double* of_far = x + unknown(link.last);
         Values& merged = link.merged_values;
-        if (e > 0) {
-            work_.others.assign(carried, carried + n_carried_);
-            work_.others.insert(work_.others.end(), of_far, of_far + link.n_far);
-            work_.others.insert(work_.others.end(), of_border, of_border + b);
-            work_.others.insert(work_.others.end(), work_.passed.begin(), work_.passed.end());
-            link.merged.solve(merged.data(), work_.others.data());
-            std::copy_n(merged.begin() + link.p_near, link.n_near, x + unknown(link.first));
-        }
-        const double* of_near = x + unknown(link.first);
-        work_.others.assign(of_near, of_near + link.n_near);
+        work_.others.assign(carried, carried + n_carried_);
         work_.others.insert(work_.others.end(), of_far, of_far + link.n_far);
         work_.others.insert(work_.others.end(), of_border, of_border + b);
-        work_.others.insert(work_.others.end(), merged.begin(), merged.begin() + link.p_near);
         work_.others.insert(work_.others.end(), work_.passed.begin(), work_.passed.end());
-        link.inside.solve(link.inside_values.data(), work_.others.data());
-        std::copy(link.inside_values.begin(), link.inside_values.end(),
-                  x + unknown(link.first) + link.n_near);
+        link.merged.solve(merged.data(), work_.others.data());
+        std::copy_n(merged.begin() + link.p_near, link.n_near, x + unknown(link.first));
         work_.passed.assign(merged.begin(), merged.begin() + link.p_near);
     }
+}
+
+/// The elements' own unknowns.
+void ChainSolver::substitute_inside(double* x) const
+{
+    const double* of_border = x + first_unknown_.back();
+    in_shares(n_links(), least_shared_links, [&](int, int begin, int end) {
+        Values others;
+        for (int e = begin; e < end; ++e) {
+            const Link& link = links_[static_cast<std::size_t>(e)];
+            const double *of_near = x + unknown(link.first), *of_far = x + unknown(link.last);
+            const auto passes = [&](const Values& merged, int n) {
+                others.insert(others.end(), merged.begin(), merged.begin() + n);
+            };
+            others.assign(of_near, of_near + link.n_near);
+            others.insert(others.end(), of_far, of_far + link.n_far);
+            others.insert(others.end(), of_border, of_border + border());
+            passes(link.merged_values, link.p_near);
+            if (link.p_far > 0) passes(links_[static_cast<std::size_t>(e) + 1].merged_values, link.p_far);
+            link.inside.solve(link.inside_values.data(), others.data());
+            std::copy(link.inside_values.begin(), link.inside_values.end(),
+                      x + unknown(link.first) + link.n_near);
+        }
+    });
 }
 
 /// Of an element in a transposed solution: its unknowns, and what they leave to carried, near, passed and

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "livens/solvers/crew.h"
 #include "livens/solvers/dense.h"
 #include "livens/solvers/linear_solver.h"
 #include "livens/solvers/patience.h"
@@ -70,6 +71,8 @@ struct Block {
     }
 };
 
+constexpr int least_shared_pieces = 8;   // that a thread takes, where there are several
+
 [[noreturn]] void refuse(const std::string& why)
 {
     throw std::invalid_argument("not known at one end: " + why);
@@ -85,6 +88,7 @@ struct Piece {
     int passed_node = 0;                  // whose rows belong to the piece after
     int known_begin = 0, passed_begin = 0, all_begin = 0;
     DenseLU lu;
+    Outcome outcome = Outcome::singular;   // of its factors
     Block known;    // own rows x unknowns of the known node
     Block passed;   // rows of the passed node x all unknowns
 };
@@ -115,14 +119,18 @@ public:
         assert(structure_ && matrix.n_elements() == structure_->n_elements());
         singular_node_ = -1;
         is_regular_ = false;
-        for (int e = 0; e < matrix.n_elements(); ++e) {
+        for_each_item(matrix.n_elements(), least_shared_pieces, [&](int e) {
             Patience::ask();
             Piece& piece = pieces_[static_cast<std::size_t>(e)];
-            if (!is_finite(matrix.storage(e))) return Outcome::not_finite;
+            piece.outcome = Outcome::not_finite;
+            if (!is_finite(matrix.storage(e))) return;
             take(matrix, e);
-            if (piece.lu.factorise()) continue;
-            singular_node_ = node_of(piece.begin + piece.lu.failed_column());
-            return Outcome::singular;
+            piece.outcome = piece.lu.factorise() ? Outcome::regular : Outcome::singular;
+        });
+        for (const Piece& piece : pieces_) {
+            if (piece.outcome == Outcome::singular)
+                singular_node_ = node_of(piece.begin + piece.lu.failed_column());
+            if (piece.outcome != Outcome::regular) return piece.outcome;
         }
         is_regular_ = true;
         return Outcome::regular;

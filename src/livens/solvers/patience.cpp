@@ -48,6 +48,11 @@ void Patience::ask()
     if (current != nullptr && ++calls % calls_between_looks == 0) current->look();
 }
 
+void Patience::ask_now()
+{
+    if (current != nullptr) current->look();
+}
+
 void Patience::look()
 {
     const double t = now();

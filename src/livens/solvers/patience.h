@@ -27,6 +27,8 @@ public:
 
     /// Every millisecond or so; most calls look at a counter alone. Throws Stopped.
     static void ask();
+    /// Not so often: no call looks at a counter alone.
+    static void ask_now();
 
 private:
     void look();

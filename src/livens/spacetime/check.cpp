@@ -8,6 +8,7 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/solvers/crew.h"
 #include "livens/spacetime/elements/rule.h"
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/mixed/bases.h"
@@ -300,6 +301,11 @@ void check_method(const Model& model, const Problem& problem, const Time& time, 
         throw InputError({"max-iterations-out-of-range", "method.max_iterations",
                           "at least one iteration is needed", std::to_string(options.max_iterations), ">= 1",
                           "", ""});
+    if (options.threads < 0 || options.threads > Crew::most_threads)
+        throw InputError({"threads-out-of-range", "method.threads",
+                          "a motion is solved by one thread or several", std::to_string(options.threads),
+                          "0 to " + std::to_string(Crew::most_threads), "0 stands for one per processor",
+                          ""});
     if (options.roots < 1 || (options.roots > 1 && problem.conditions.has_state()))
         throw InputError(
             {"roots-unused", "method.roots", "several motions are looked for between both ends of time",

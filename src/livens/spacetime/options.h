@@ -12,7 +12,17 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
-struct SolveOptions {
+/// What a solution may use of the machine.
+struct SolveResources {
+    /// Threads that solve windows of several elements, the caller's included; no bit depends on their number.
+    /// 0: as many as the machine has processors. A march, one element after the other, has no use for them.
+    int threads = 1;
+    /// What the motion may take in memory before a march to an accuracy is given up: it says beforehand only
+    /// where it ends.
+    double most_bytes = 8.0 * (1u << 30);
+};
+
+struct SolveOptions : SolveResources {
     /// Newton stops when the estimated error of the scaled increment is below this (relative to the motion
     /// inside the element, at least to 1e-6 of the model's length), or at the rounding level of the residual.
     /// Elements of lobatto and radau: at 1e-10 at the latest where an estimate or a growth compares motions.
@@ -20,9 +30,6 @@ struct SolveOptions {
     int max_iterations = 30;
     StartPolicy initial = StartPolicy::check;
     ProgressCallback progress;
-    /// What the motion may take in memory before a march to an accuracy is given up: it says beforehand only
-    /// where it ends.
-    double most_bytes = 8.0 * (1u << 30);
     /// Condition numbers of the whole matrix, in the report: of the last block (mixed), of all elements
     /// together, reduced to the free motions (lobatto).
     bool condition = false;

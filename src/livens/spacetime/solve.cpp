@@ -17,8 +17,10 @@
 #include "livens/dynamics/rows/tables.h"
 #include "livens/dynamics/start/prepared.h"
 #include "livens/dynamics/start/singular.h"
+#include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/accuracy/accuracy.h"
+#include "livens/spacetime/ensemble.h"
 #include "livens/spacetime/found.h"
 #include "livens/spacetime/phases.h"
 #include "livens/spacetime/roots.h"
@@ -135,6 +137,7 @@ Solution solve(const Model& model, const Problem& stated, const Time& time, cons
 {
     // A method that cannot take the conditions or the drives is refused before any work.
     check_method(model, stated, time, method, options);
+    const Crew crew(threads_for(options.threads));
     const Problem problem = with_prepared(stated);
     Solution solution;
     if (model.has_rotors()) {

@@ -150,6 +150,7 @@ const std::set<std::string_view> without{
     "time-out-of-range",
     "time-outside",
     "time-start",
+    "threads-out-of-range",
     "tolerance-out-of-range",
     "unknown-order",
     "unknown-unseen",

@@ -11,16 +11,23 @@
 
 namespace livens::inline solvers_internal {
 
+inline constexpr int least_shared_links = 8;   // that a thread takes, where there are several
+
+/// Of an element, while solving: of its pivots, of those of what is merged, and of rows inside without.
+struct LinkValues {
+    mutable std::vector<double> inside_values, merged_values, left_values;
+};
+
 /// An element of the chain. Columns of `inside`: its own unknowns | near, far, border, passed_near,
 /// passed_far; of `merged`: passed_near, near | carried, far, border, passed_far.
-struct Link {
+struct Link : LinkValues {
     int first = 0, last = 0;                // nodes
     int n_near = 0, n_own = 0, n_far = 0;   // unknowns: of the first node, between, of the last node
     int r_near = 0, r_own = 0, r_far = 0;   // rows
     int p_near = 0, p_far = 0;              // numbers that pass at its ends: rows there, or none
     double scale = 1;                       // of what passes at its far end
     Panel inside, merged;
-    mutable std::vector<double> inside_values, merged_values;   // of their pivots, while solving
+    int failed = -1;        // column inside that has no pivot
 };
 
 /// Vectors on the way of a solution.
@@ -49,7 +56,7 @@ private:
     void fill_inside(int e);
     void fill_merged(int e);
     void fill_closing();
-    bool condense(int e);
+    bool condense(Link& link, int e);
     bool merge(int e);
     bool fail(int node)
     {
@@ -60,8 +67,10 @@ private:
     void solve(std::span<double> x, bool is_transposed) const;
     void apply_inverse(double* x) const;
     void apply_inverse_transposed(double* x) const;
+    void eliminate_inside(const double* x) const;
     void eliminate_transposed(const Link& link, const double* x) const;
     void substitute_back(double* x) const;
+    void substitute_inside(double* x) const;
     void subtract_product(const double* x, double* y, bool is_transposed) const;
 
     std::optional<BlockStructure> structure_;

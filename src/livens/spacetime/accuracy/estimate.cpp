@@ -15,9 +15,11 @@
 #include "livens/base/text.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
+#include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/accuracy/accuracy.h"
 #include "livens/spacetime/accuracy/reference_solution.h"
+#include "livens/spacetime/ensemble.h"
 #include "livens/spacetime/events.h"
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/rotating.h"
@@ -361,6 +363,7 @@ void estimate(const Model& model, const Problem& stated, const Method& method, c
         return;
     }
     const Problem problem = with_prepared(stated);
+    const Crew crew(threads_for(options.threads));
     SolveReport& report = solution.report;
     if (!report.converged()) return;
     const int n = solution.motion.n_elements();

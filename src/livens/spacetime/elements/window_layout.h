@@ -11,6 +11,10 @@
 
 namespace livens::inline spacetime_internal {
 
+/// Elements, or nodes, that a thread has at least where threads share a window: fewer are not worth waking
+/// it.
+inline constexpr int least_shared = 8;
+
 /// Nodes 0..n of consecutive elements of degree p; element e spans nodes e p .. (e + 1) p. Where the state is
 /// given at the end of time the elements are numbered, and their nodes lie, against time: all lengths are
 /// negative then, and no equation changes (docs/theory.md, "Against time").

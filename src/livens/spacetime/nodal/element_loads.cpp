@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "livens/solvers/crew.h"
 #include "livens/spacetime/elements/kernel_functions.h"
 #include "livens/spacetime/nodal/nodes.h"
 
@@ -17,7 +18,7 @@ ElementLoads::ElementLoads(const ModelTables& tables, const ElementRule& rule)
     if (tables.model->loads().empty()) return;
     const lanes::Functions& functions = *lanes::functions(rule.degree);
     const int W = functions.width;
-    lanes_.emplace(tables, functions.loads, W, rule.degree);
+    workspaces_.emplace_back(tables, rule);
     M_.resize(static_cast<std::size_t>(rule.size() * W));
     dM_ = M_;
     for (int B = 0; B < rule.size(); ++B)
@@ -26,9 +27,15 @@ ElementLoads::ElementLoads(const ModelTables& tables, const ElementRule& rule)
             M_[B * W + l] = rule.M[c * rule.size() + B];
             dM_[B * W + l] = rule.dM[c * rule.size() + B];
         }
-    X_.assign(12 * tables.bodies.size() * static_cast<std::size_t>(W), 0.0);
-    V_ = F_ = X_;
-    factors_.assign(static_cast<std::size_t>(W), 0.0);
+}
+
+ElementLoads::Workspace::Workspace(const ModelTables& tables, const ElementRule& rule)
+{
+    const lanes::Functions& functions = *lanes::functions(rule.degree);
+    lanes = std::make_unique<LoadLanes>(tables, functions.loads, functions.width, rule.degree);
+    X.assign(12 * tables.bodies.size() * static_cast<std::size_t>(functions.width), 0.0);
+    V = F = X;
+    factors.assign(static_cast<std::size_t>(functions.width), 0.0);
 }
 
 void ElementLoads::interpolate(const WindowLayout& layout, const NodePositions& nodes, int e, int c,
@@ -66,13 +73,14 @@ std::span<const double> ElementLoads::angles(int e, int c) const
 }
 
 /// X and X' at all load points, about the centres of mass.
-void ElementLoads::interpolate_all(const WindowLayout& layout, const NodePositions& nodes, int e)
+void ElementLoads::interpolate_all(const WindowLayout& layout, const NodePositions& nodes, int e,
+                                   Workspace& at) const
 {
-    const int W = lanes_->width();
+    const int W = at.lanes->width();
     const double inverse = 1 / layout.h(e);
     const double* first = nodes.X(e * rule_.degree);
     for (int i = 0; i < 12 * tables_.n_bodies(); ++i) {
-        double *X = X_.data() + i * W, *V = V_.data() + i * W;
+        double *X = at.X.data() + i * W, *V = at.V.data() + i * W;
         std::fill_n(X, W, first[i]);
         std::fill_n(V, W, 0.0);
         for (int B = 1; B < rule_.size(); ++B) {
@@ -87,24 +95,24 @@ void ElementLoads::interpolate_all(const WindowLayout& layout, const NodePositio
         for (int a = 0; tables_.bodies[b].offset && a < 3; ++a)
             for (int k = 0; k < 3 * W; ++k) {
                 const double center = tables_.bodies[b].center[a];
-                X_[12 * b * W + k] += center * X_[(12 * b + 3 + 3 * a) * W + k];
-                V_[12 * b * W + k] += center * V_[(12 * b + 3 + 3 * a) * W + k];
+                at.X[12 * b * W + k] += center * at.X[(12 * b + 3 + 3 * a) * W + k];
+                at.V[12 * b * W + k] += center * at.V[(12 * b + 3 + 3 * a) * W + k];
             }
 }
 
-void ElementLoads::add_element(const WindowLayout& layout, const NodePositions& nodes, int e)
+void ElementLoads::add_element(const WindowLayout& layout, const NodePositions& nodes, int e, Workspace& at)
 {
-    const int n_nodes = rule_.size(), n = 12 * tables_.n_bodies(), W = lanes_->width();
-    interpolate_all(layout, nodes, e);
-    for (int c = 0; c < rule_.degree; ++c) factors_[c] = layout.h(e) * rule_.loads.weights[c];
-    lanes_->begin(layout.load_points(rule_, e));
+    const int n_nodes = rule_.size(), n = 12 * tables_.n_bodies(), W = at.lanes->width();
+    interpolate_all(layout, nodes, e, at);
+    for (int c = 0; c < rule_.degree; ++c) at.factors[c] = layout.h(e) * rule_.loads.weights[c];
+    at.lanes->begin(layout.load_points(rule_, e));
     const std::span<const double> turns = angles(e, 0);
-    lanes_->evaluate(X_.data(), V_.data(), factors_.data(), turns, F_.data());
+    at.lanes->evaluate(at.X.data(), at.V.data(), at.factors.data(), turns, at.F.data());
     for (int A = 0; A < n_nodes; ++A) {
         double* forces = forces_.data() + (e * n_nodes + A) * n;
         for (int i = 0; i < n; ++i) {
             forces[i] = 0;
-            for (int c = 0; c < rule_.degree; ++c) forces[i] += rule_.M[c * n_nodes + A] * F_[i * W + c];
+            for (int c = 0; c < rule_.degree; ++c) forces[i] += rule_.M[c * n_nodes + A] * at.F[i * W + c];
         }
         for (int b = 0; b < tables_.n_bodies(); ++b)   // about the reference points
             for (int k = 0; tables_.bodies[b].offset && k < 9; ++k)
@@ -115,9 +123,12 @@ void ElementLoads::add_element(const WindowLayout& layout, const NodePositions& 
 void ElementLoads::evaluate(const WindowLayout& layout, const NodePositions& nodes)
 {
     count_turns(layout, nodes);
-    if (!lanes_) return;
+    if (workspaces_.empty()) return;
+    while (static_cast<int>(workspaces_.size()) < Crew::size()) workspaces_.emplace_back(tables_, rule_);
     forces_.resize(layout.n_elements() * rule_.size() * 12 * tables_.bodies.size());
-    for (int e = 0; e < layout.n_elements(); ++e) add_element(layout, nodes, e);
+    in_shares(layout.n_elements(), least_shared, [&](int slot, int begin, int end) {
+        for (int e = begin; e < end; ++e) add_element(layout, nodes, e, workspaces_[slot]);
+    });
 }
 
 std::string ElementLoads::bad_load(const WindowLayout& layout, const NodePositions& nodes) const

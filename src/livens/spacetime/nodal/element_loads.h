@@ -2,7 +2,7 @@
 // Loads on the elements of a window: their quadrature on X and X' of the elements' own polynomials.
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,17 +34,23 @@ public:
     std::string bad_load(const WindowLayout& layout, const NodePositions& nodes) const;
 
 private:
-    void interpolate_all(const WindowLayout& layout, const NodePositions& nodes, int e);
-    void add_element(const WindowLayout& layout, const NodePositions& nodes, int e);
+    /// Of a thread; in lanes, about the centres of mass.
+    struct Workspace {
+        explicit Workspace(const ModelTables& tables, const ElementRule& rule);
+
+        std::unique_ptr<LoadLanes> lanes;
+        AlignedDoubles X, V, F, factors;
+    };
+    void interpolate_all(const WindowLayout& layout, const NodePositions& nodes, int e, Workspace& at) const;
+    void add_element(const WindowLayout& layout, const NodePositions& nodes, int e, Workspace& at);
 
     const ModelTables& tables_;
     const ElementRule& rule_;
     std::ptrdiff_t n_;   // numbers of all bodies
-    std::optional<LoadLanes> lanes_;
-    AlignedDoubles M_, dM_;                // M_B(s_c) and its slope, a row of lanes over c for each B
-    AlignedDoubles X_, V_, F_, factors_;   // in lanes, about the centres of mass
-    std::vector<double> forces_;           // F_A, element after element
-    std::vector<double> angles_;           // node after node
+    std::vector<Workspace> workspaces_;   // none without loads
+    AlignedDoubles M_, dM_;               // M_B(s_c) and its slope, a row of lanes over c for each B
+    std::vector<double> forces_;          // F_A, element after element
+    std::vector<double> angles_;          // node after node
 };
 
 /// sum += factor * x, 12 numbers a body, for arrays that do not overlap.

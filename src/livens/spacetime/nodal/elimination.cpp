@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "livens/dynamics/instant/instant.h"
+#include "livens/solvers/crew.h"
 #include "livens/solvers/dense.h"
 #include "livens/solvers/patience.h"
 #include "livens/solvers/short_rows.h"
@@ -38,30 +39,13 @@ BlockStructure structure_of(const WindowLayout& layout, int freedoms)
     return structure;
 }
 
-class NullSpaces final : public Elimination {
-public:
-    NullSpaces(const ModelTables& tables, const WindowLayout& layout, std::unique_ptr<LinearSolver> solver)
-        : tables_(tables), f_(tables.freedoms()), structure_(structure_of(layout, tables.freedoms())),
-          solver_(std::move(solver))
-    {
-        const auto n = static_cast<std::size_t>(tables.n_twists * f_);
-        if (f_ == 0) return;   // nothing moves but what is driven
-        matrix_.resize(structure_);
-        solver_->analyse(structure_);
-        product_.assign(n, 0.0);
-        z_.assign(n * static_cast<std::size_t>(layout.n_nodes()), 0.0);
-    }
+class NullSpaces;
 
-    void begin(const WindowLayout& layout, const Nodes& nodes) override
-    {
-        layout_ = &layout;
-        stand_at(tables_, nodes);
-        for (int A = 0; A < layout.n_nodes(); ++A)
-            if (layout.is_active(A) || layout.is_unknown(A))
-                nodes.basis(A).q.null_space(z_.data() + place(A));
-        maps_.clear();
-        if (!layout.is_march()) maps_.assign(nodes.maps(0), nodes.maps(layout.n_nodes()));
-    }
+/// Blocks of the pairs that one thread puts in.
+class Pairs final : public TangentSink {
+public:
+    explicit Pairs(NullSpaces& all);
+
     void open(int e, int A, int B) override
     {
         e_ = e;
@@ -72,6 +56,45 @@ public:
     void block(int body_i, int body_j, const double* values) override;
     void close() override;
     bool take_transposed(int e, int A, int B) override;
+
+private:
+    NullSpaces& all_;
+    int e_ = 0, A_ = 0, B_ = 1;     // the open pair
+    std::vector<double> product_;   // block of the tangent times the null space at B, n x f
+};
+
+class NullSpaces final : public Elimination {
+public:
+    NullSpaces(const ModelTables& tables, const WindowLayout& layout, std::unique_ptr<LinearSolver> solver)
+        : tables_(tables), f_(tables.freedoms()), structure_(structure_of(layout, tables.freedoms())),
+          solver_(std::move(solver))
+    {
+        const auto n = static_cast<std::size_t>(tables.n_twists * f_);
+        pairs_.emplace_back(*this);
+        if (f_ == 0) return;   // nothing moves but what is driven
+        matrix_.resize(structure_);
+        solver_->analyse(structure_);
+        z_.assign(n * static_cast<std::size_t>(layout.n_nodes()), 0.0);
+    }
+
+    void begin(const WindowLayout& layout, const Nodes& nodes) override
+    {
+        layout_ = &layout;
+        stand_at(tables_, nodes);
+        while (static_cast<int>(pairs_.size()) < Crew::size()) pairs_.emplace_back(*this);
+        for_each_item(layout.n_nodes(), least_shared, [&](int A) {
+            if (layout.is_active(A) || layout.is_unknown(A))
+                nodes.basis(A).q.null_space(z_.data() + place(A));
+        });
+        maps_.clear();
+        if (!layout.is_march()) maps_.assign(nodes.maps(0), nodes.maps(layout.n_nodes()));
+    }
+    void open(int e, int A, int B) override { pairs_[0].open(e, A, B); }
+    void mass(int body, double factor, const double* H) override { pairs_[0].mass(body, factor, H); }
+    void block(int i, int j, const double* values) override { pairs_[0].block(i, j, values); }
+    void close() override { pairs_[0].close(); }
+    bool take_transposed(int e, int A, int B) override { return pairs_[0].take_transposed(e, A, B); }
+    TangentSink* of_thread(int slot) override { return &pairs_[static_cast<std::size_t>(slot)]; }
     void close_with(std::span<const double> closing, const DenseMatrix& by_numbers) override;
     void stand_at(const ModelTables& tables, const Nodes& nodes) override
     {
@@ -95,6 +118,8 @@ public:
     void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
 
 private:
+    friend class Pairs;
+
     LinearMap applying(void (LinearSolver::*apply)(std::span<double>) const) const
     {
         return [this, apply](std::span<const double> x, std::span<double> y) {
@@ -125,20 +150,23 @@ private:
     BlockStructure structure_;
     std::unique_ptr<LinearSolver> solver_;
     BlockMatrix matrix_;
-    int e_ = 0, A_ = 0, B_ = 1;     // the open pair
-    std::vector<double> z_;         // null space of every node, n x f
-    std::vector<double> product_;   // block of the tangent times the null space at B, n x f
-    std::vector<double> x_;         // reduced unknowns
-    std::vector<double> maps_;      // of the nodes where the tangent was formed; empty: bases may turn
+    std::vector<Pairs> pairs_;   // of each thread
+    std::vector<double> z_;      // null space of every node, n x f
+    std::vector<double> x_;      // reduced unknowns
+    std::vector<double> maps_;   // of the nodes where the tangent was formed; empty: bases may turn
 };
 
-void NullSpaces::mass(int body, double factor, const double* H)
+Pairs::Pairs(NullSpaces& all)
+    : all_(all), product_(static_cast<std::size_t>(all.tables_.n_twists * all.f_), 0.0)
+{}
+
+void Pairs::mass(int body, double factor, const double* H)
 {
-    const double* __restrict z = null_space(B_, body);
-    const int first = tables_.bodies[body].first, f = f_;
+    const double* __restrict z = all_.null_space(B_, body);
+    const int first = all_.tables_.bodies[body].first, f = all_.f_;
     double* __restrict v = product_.data() + first * f;
     for (int j = 0; j < 3 * f; ++j) v[j] = factor * z[j];
-    if (tables_.bodies[body].dofs == 3) return;
+    if (all_.tables_.bodies[body].dofs == 3) return;
     const double* __restrict z0 = z + 3 * f;
     const double* __restrict z1 = z + 4 * f;
     const double* __restrict z2 = z + 5 * f;
@@ -149,39 +177,44 @@ void NullSpaces::mass(int body, double factor, const double* H)
     }
 }
 
-void NullSpaces::block(int body_i, int body_j, const double* values)
+void Pairs::block(int body_i, int body_j, const double* values)
 {
-    const double* z = null_space(B_, body_j);
-    for (int i = 0; i < tables_.bodies[body_i].dofs; ++i) {
-        double* __restrict v = product_.data() + (tables_.bodies[body_i].first + i) * f_;
-        for (int k = 0; k < tables_.bodies[body_j].dofs; ++k) {
+    const BodyTables& bodies = all_.tables_.bodies;
+    const double* z = all_.null_space(B_, body_j);
+    const int f = all_.f_;
+    for (int i = 0; i < bodies[body_i].dofs; ++i) {
+        double* __restrict v = product_.data() + (bodies[body_i].first + i) * f;
+        for (int k = 0; k < bodies[body_j].dofs; ++k) {
             const double s = values[6 * i + k];
             if (s == 0) continue;
-            const double* __restrict row = z + k * f_;
-            for (int j = 0; j < f_; ++j) v[j] += s * row[j];
+            const double* __restrict row = z + k * f;
+            for (int j = 0; j < f; ++j) v[j] += s * row[j];
         }
     }
 }
 
 /// The block at (A, B) <- Z_A^T product.
-void NullSpaces::close()
+void Pairs::close()
 {
-    if (f_ == 0) return;
-    if (f_ >= 64) Patience::ask();
-    const int stride = matrix_.stride(e_);
-    double* const block = matrix_.block(e_, place_of_row(*layout_, A_), B_);
-    for (int r = 0; r < f_; ++r) std::fill_n(block + r * stride, f_, 0.0);
-    lanes::functions(4)->blocks->add_from_left(z_.data() + place(A_), {tables_.n_twists, f_, 1},
-                                               product_.data(), f_, block, stride);
+    const int f = all_.f_;
+    if (f == 0) return;
+    if (f >= 64) Patience::ask();
+    const int stride = all_.matrix_.stride(e_);
+    double* const block = all_.matrix_.block(e_, place_of_row(*all_.layout_, A_), B_);
+    for (int r = 0; r < f; ++r) std::fill_n(block + r * stride, f, 0.0);
+    lanes::functions(4)->blocks->add_from_left(all_.z_.data() + all_.place(A_), {all_.tables_.n_twists, f, 1},
+                                               product_.data(), f, block, stride);
 }
 
-bool NullSpaces::take_transposed(int e, int A, int B)
+bool Pairs::take_transposed(int e, int A, int B)
 {
-    const int stride = f_ > 0 ? matrix_.stride(e) : 0;
-    const double* from = f_ > 0 ? matrix_.block(e, place_of_row(*layout_, B), A) : nullptr;
-    double* to = f_ > 0 ? matrix_.block(e, place_of_row(*layout_, A), B) : nullptr;
-    for (int i = 0; i < f_; ++i)
-        for (int j = 0; j < f_; ++j) to[i * stride + j] = from[j * stride + i];
+    const int f = all_.f_;
+    if (f == 0) return true;
+    const int stride = all_.matrix_.stride(e);
+    const double* from = all_.matrix_.block(e, place_of_row(*all_.layout_, B), A);
+    double* to = all_.matrix_.block(e, place_of_row(*all_.layout_, A), B);
+    for (int i = 0; i < f; ++i)
+        for (int j = 0; j < f; ++j) to[i * stride + j] = from[j * stride + i];
     return true;
 }
 
@@ -215,20 +248,22 @@ void NullSpaces::close_with(std::span<const double> closing, const DenseMatrix& 
 /// short, off a solution.
 void NullSpaces::to_factorised(double* x) const
 {
-    const int n = tables_.n_twists, k = tables_.rank;
+    const int n = tables_.n_twists, k = tables_.rank, first = layout_->is_active(0) ? 0 : 1;
     const RowFunctions& rows = row_functions();
-    std::vector<double> row(static_cast<std::size_t>(n));
-    for (int A = 0; A < structure_.n_nodes(); ++A) {
-        if (!layout_->is_active(A)) continue;
-        std::fill_n(row.begin(), k, 0.0);
-        std::copy_n(x, f_, row.begin() + k);
-        nodes_->basis(A).q.apply(row.data());
-        carry_rows({*bodies_, nodes_->maps(A)}, {tables_.bodies, maps_at(A)}, row.data());
-        std::fill_n(x, f_, 0.0);
-        const double* z = z_.data() + place(A);
-        for (int i = 0; i < n; ++i) subtract_scaled(rows, x, -row[i], z + i * f_, f_);
-        x += f_;
-    }
+    in_shares(structure_.n_nodes(), least_shared, [&](int, int begin, int end) {
+        std::vector<double> row(static_cast<std::size_t>(n));
+        for (int A = begin; A < end; ++A) {
+            if (!layout_->is_active(A)) continue;
+            double* const of_node = x + static_cast<std::ptrdiff_t>(A - first) * f_;
+            std::fill_n(row.begin(), k, 0.0);
+            std::copy_n(of_node, f_, row.begin() + k);
+            nodes_->basis(A).q.apply(row.data());
+            carry_rows({*bodies_, nodes_->maps(A)}, {tables_.bodies, maps_at(A)}, row.data());
+            std::fill_n(of_node, f_, 0.0);
+            const double* z = z_.data() + place(A);
+            for (int i = 0; i < n; ++i) subtract_scaled(rows, of_node, -row[i], z + i * f_, f_);
+        }
+    });
 }
 
 /// A twist of node A in the null space that the factors belong to, in the axes of where it stands now. It is
@@ -247,20 +282,19 @@ void NullSpaces::solve(std::span<const double> rows, const double*, double* y)
     x_.assign(rows.begin(), rows.end());
     if (!maps_.empty()) to_factorised(x_.data());
     if (f_ > 0) solver_->solve(x_);
-    const double* x = x_.data();
-    for (int A = 0; A < structure_.n_nodes(); ++A) {
-        if (!layout_->is_unknown(A)) continue;
-        if (!maps_.empty()) {
-            to_current(x, A, y);
-        } else {
-            std::fill(y, y + k, 0.0);
-            std::copy(x, x + f_, y + k);
-            nodes_->basis(A).q.apply(y);
-        }
-        x += f_;
-        y += n;
-    }
-    std::copy_n(x, structure_.n_border, y);
+    const int first = layout_->is_unknown(0) ? 0 : 1;
+    for_each_item(structure_.n_nodes(), least_shared, [&](int A) {
+        if (!layout_->is_unknown(A)) return;
+        const double* x = x_.data() + static_cast<std::ptrdiff_t>(A - first) * f_;
+        double* to = y + static_cast<std::ptrdiff_t>(A - first) * n;
+        if (!maps_.empty()) return to_current(x, A, to);
+        std::fill(to, to + k, 0.0);
+        std::copy(x, x + f_, to + k);
+        nodes_->basis(A).q.apply(to);
+    });
+    const int last = structure_.n_nodes() - 1, n_unknown = last + (layout_->is_unknown(last) ? 1 : 0) - first;
+    std::copy_n(x_.end() - structure_.n_border, structure_.n_border,
+                y + static_cast<std::ptrdiff_t>(n_unknown) * n);
 }
 
 /// A few powers of A^-1 W W A^-T, W the sizes of rows: the largest singular value of A^-1 W, from below, and

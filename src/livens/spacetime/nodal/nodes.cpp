@@ -12,6 +12,7 @@
 
 #include "livens/dynamics/instant/instant.h"
 #include "livens/dynamics/rows/twist.h"
+#include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 
 namespace livens {
@@ -58,8 +59,7 @@ inline void subtract_two_sums(const double* __restrict x, const double* __restri
 }   // namespace
 
 NodePositions::NodePositions(const ModelTables& tables, const ElementRule& rule)
-    : tables_(tables), rule_(rule), size_(12 * tables.bodies.size()), displacement_(size_, 0.0),
-      twist_(size_, 0.0)
+    : tables_(tables), rule_(rule), size_(12 * tables.bodies.size())
 {}
 
 void NodePositions::open(const WindowLayout& layout)
@@ -119,7 +119,6 @@ void NodePositions::place_solved(const double* increments, int width)
     }
 }
 
-/// Node A of `to` <- node A_from of `from`, both parts, + the displacement at hand.
 void NodePositions::adopt(const NodePositions& others, const WindowLayout& layout)
 {
     const Set& kept = others.sets_[others.kept_];
@@ -133,43 +132,47 @@ void NodePositions::adopt(const NodePositions& others, const WindowLayout& layou
         }
 }
 
-void NodePositions::add(const Set& from, int A_from, Set& to, int A)
+/// Node A of `to` <- node A_from of `from`, both parts, moved.
+void NodePositions::displace(const Set& from, int A_from, const double* twist, double factor, Set& to, int A)
 {
-    add_two_sums(from.X.data() + place(A_from), from.low.data() + place(A_from), displacement_.data(),
-                 to.X.data() + place(A), to.low.data() + place(A), size_);
-}
-
-void NodePositions::displace(const Set& from, int A_from, const double* twist, Set& to, int A)
-{
-    const double* X = from.X.data() + place(A_from);
+    double displacement[12] = {}, scaled[6];
     for (int b = 0; b < tables_.n_bodies(); ++b) {
         const auto& body = tables_.bodies[b];
-        if (body.dofs == 6)
-            twist::displacement(twist + body.first, X + 12 * b, displacement_.data() + 12 * b);
-        else
-            std::copy_n(twist + body.first, 3, displacement_.data() + 12 * b);   // the rest stays zero
+        const std::size_t at = 12 * static_cast<std::size_t>(b);
+        const double* own = twist + body.first;
+        for (int i = 0; i < body.dofs && factor != 1; ++i) scaled[i] = factor * own[i];
+        if (factor != 1) own = scaled;
+        if (body.dofs == 6) {
+            twist::displacement(own, from.X.data() + place(A_from) + at, displacement);
+        } else {
+            std::fill(displacement + 3, displacement + 12, 0.0);
+            std::copy_n(own, 3, displacement);
+        }
+        add_two_sums(from.X.data() + place(A_from) + at, from.low.data() + place(A_from) + at, displacement,
+                     to.X.data() + place(A) + at, to.low.data() + place(A) + at, 12);
     }
-    add(from, A_from, to, A);
 }
 
 void NodePositions::place_from(int A, int from, const double* twist)
 {
-    displace(sets_[current_], from, twist, sets_[current_], A);
+    displace(sets_[current_], from, twist, 1, sets_[current_], A);
 }
 
 void NodePositions::turn_from(int A, int from, const double* turns)
 {
-    for (int b = 0; b < tables_.n_bodies(); ++b)
-        twist::displacement(turns + 7 * b, turns + 7 * b + 3, X(from) + 12 * b,
-                            displacement_.data() + 12 * b);
-    add(sets_[current_], from, sets_[current_], A);
+    Set& set = sets_[current_];
+    double displacement[12] = {};
+    for (int b = 0; b < tables_.n_bodies(); ++b) {
+        const std::size_t at = 12 * static_cast<std::size_t>(b);
+        twist::displacement(turns + 7 * b, turns + 7 * b + 3, X(from) + at, displacement);
+        add_two_sums(set.X.data() + place(from) + at, set.low.data() + place(from) + at, displacement,
+                     set.X.data() + place(A) + at, set.low.data() + place(A) + at, 12);
+    }
 }
 
 void NodePositions::move(int A, const double* twist, double factor)
 {
-    if (factor == 1) return displace(sets_[kept_], A, twist, sets_[1 - kept_], A);
-    for (int i = 0; i < tables_.n_twists; ++i) twist_[i] = factor * twist[i];
-    displace(sets_[kept_], A, twist_.data(), sets_[1 - kept_], A);
+    displace(sets_[kept_], A, twist, factor, sets_[1 - kept_], A);
 }
 
 void NodePositions::take_differences(int e)
@@ -208,7 +211,7 @@ void Nodes::open(const WindowLayout& layout)
     phi_.assign(n * tables_.rank, 0.0);
     known_.assign(n, nullptr);
     bases_.clear();
-    work_.assign(2 * size_, 0.0);   // numbers of a twist, a twist
+    moves_.assign(n, 0.0);
 }
 
 void Nodes::fix(int A, const InstantState& state)
@@ -232,43 +235,70 @@ void Nodes::begin_constraining()
         }
         bases_ = std::move(bases);
     }
+    const auto n_threads = static_cast<std::size_t>(Crew::size());
+    if (work_.size() < n_threads) work_.resize(n_threads, std::vector<double>(2 * size_, 0.0));
     if (has_start_ || known_[0] == nullptr) return;
     has_start_ = true;
     pivots_[0] = known_[0]->smallest_pivot;
     for (int c = 0; c < tables_.rank; ++c) phi_[c] = tables_.rows.value((*first_rows_)[c], at(0), X(0));
 }
 
+/// Bases first, since changes are told by those of two nodes; violations last, which add up along the nodes.
 bool Nodes::constrain(const WindowLayout& layout, bool same_choices)
 {
     near_ = true;
     begin_constraining();
-    double sum = 0;
-    for (int e = 0; e < layout.n_elements(); ++e) {
-        Patience::ask();
-        take_differences(e);
+    const auto for_nodes = [&](int e, const auto& act) {
         for (int B = e == 0 ? 0 : 1; B <= rule_.degree; ++B)
-            if (layout.is_unknown(e * rule_.degree + B)) constrain_node(e, B, same_choices, sum);
-    }
+            if (layout.is_unknown(e * rule_.degree + B)) act(B);
+    };
+    in_shares(layout.n_elements(), least_shared, [&](int, int begin, int end) {
+        for (int e = begin; e < end; ++e) {
+            Patience::ask();
+            take_differences(e);
+            for_nodes(e, [&](int B) { build_basis(e * rule_.degree + B, same_choices); });
+        }
+    });
+    in_shares(layout.n_elements(), least_shared, [&](int slot, int begin, int end) {
+        for (int e = begin; e < end; ++e)
+            for_nodes(e, [&](int B) { find_changes(e, B, work_[slot].data()); });
+    });
+    double sum = 0;
+    for (int e = 0; e < layout.n_elements(); ++e)
+        for_nodes(e, [&](int B) { find_violations(e, B, sum); });
     return std::isfinite(sum);
 }
 
-void Nodes::constrain_node(int e, int B, bool same_choices, double& sum)
+void Nodes::build_basis(int A, bool same_choices)
+{
+    tables_.bodies.map_twists(X(A), maps_.data() + place(A));
+    pivots_[A] = bases_[A].build(tables_, at(A), X(A), maps(A), rows(), same_choices);
+}
+
+/// Of Phi, from the element's first node, which keeps the digits of a small increment; Phi itself at the
+/// first node of all.
+void Nodes::find_changes(int e, int B, double* work)
+{
+    const int start = e * rule_.degree, A = start + B;
+    const ConstraintBasis &first = basis(start), &own = bases_[A];
+    for (int c = 0; c < tables_.rank; ++c)
+        phi_[A * tables_.rank + c] =
+            B == 0 ? tables_.rows.value(own.rows[c], at(A), X(A), own.gradient(c))
+            : tables_.rows[own.rows[c]].is_quadratic
+                ? tables_.rows.change(own.rows[c], first.gradient(c), own.gradient(c), dX(e, B))
+                : followed(e, B, c, work);
+}
+
+void Nodes::find_violations(int e, int B, double& sum)
 {
     constexpr double rounding = 1e-16;   // of Phi at the start itself: nothing to correct
     constexpr double close = 1e-4;       // relative, for one linear step onto the constraints
     const int start = e * rule_.degree, A = start + B, k = tables_.rank;
-    const ConstraintBasis& first = basis(start);
-    const double *reference = phi_.data() + start * k, *step = dX(e, B);
-    ConstraintBasis& own = bases_[A];
-    tables_.bodies.map_twists(X(A), maps_.data() + place(A));
-    pivots_[A] = own.build(tables_, at(A), X(A), maps(A), rows(), same_choices);
+    const ConstraintBasis& own = bases_[A];
     for (int c = 0; c < k; ++c) {
         const auto& table = tables_.rows[own.rows[c]];
-        // from the element's first node, which keeps the digits of a small increment
-        double phi = B == 0               ? tables_.rows.value(own.rows[c], at(A), X(A), own.gradient(c))
-                     : table.is_quadratic ? reference[c] + tables_.rows.change(own.rows[c], first.gradient(c),
-                                                                               own.gradient(c), step)
-                                          : followed(e, B, c);
+        double phi = phi_[A * k + c];
+        if (B > 0) phi = phi_[(table.is_quadratic ? start : A - 1) * k + c] + phi;
         if (std::abs(phi) < rounding * table.row->scale) phi = 0;
         if (!(std::abs(phi) <= close * table.row->scale)) near_ = false;
         phi_[A * k + c] = phi;
@@ -277,40 +307,42 @@ void Nodes::constrain_node(int e, int B, bool same_choices, double& sum)
     }
 }
 
-/// Phi from that of the node before, so that angles are followed through several turns.
-double Nodes::followed(int e, int B, int c)
+/// The change of Phi from the node before, so that angles are followed through several turns.
+double Nodes::followed(int e, int B, int c, double* work) const
 {
     const int A = e * rule_.degree + B;
     const ConstraintRow& row = *tables_.rows[bases_[A].rows[c]].row;
     const double* step = dX(e, B);
-    double* difference = work_.data();
-    for (std::size_t i = 0; i < size_; ++i) difference[i] = B > 1 ? step[i] - dX(e, B - 1)[i] : step[i];
-    return phi_[(A - 1) * tables_.rank + c] + constraint_change(row, at(A - 1), Configurations(X(A - 1)),
-                                                                at(A), Configurations(X(A)),
-                                                                Configurations(difference));
+    for (std::size_t i = 0; i < size_; ++i) work[i] = B > 1 ? step[i] - dX(e, B - 1)[i] : step[i];
+    return constraint_change(row, at(A - 1), Configurations(X(A - 1)), at(A), Configurations(X(A)),
+                             Configurations(work));
 }
 
 double Nodes::correct(const WindowLayout& layout)
 {
     const int k = tables_.rank, n = tables_.n_twists;
+    in_shares(layout.n_nodes(), least_shared, [&](int slot, int begin, int end) {
+        double *y = work_[slot].data(), *twist = y + size_;
+        for (int A = begin; A < end; ++A) {
+            moves_[A] = 0;
+            if (!layout.is_unknown(A)) continue;
+            Patience::ask();
+            const double* phi = violations(A);
+            if (std::all_of(phi, phi + k, [](double value) { return value == 0; })) continue;
+            std::fill(y, y + n, 0.0);
+            for (int c = 0; c < k; ++c) y[c] = -phi[c];
+            const OrthogonalBasis& q = bases_[A].q;
+            q.solve_R_transposed(y);
+            q.apply(y);
+            tables_.bodies.to_twist(maps(A), y, twist);
+            moves_[A] = size_of(twist);
+            place_from(A, A, twist);
+        }
+    });
     double correction = 0;
-    double *y = work_.data(), *twist = y + size_;
-    for (int A = 0; A < layout.n_nodes(); ++A) {
-        if (!layout.is_unknown(A)) continue;
-        Patience::ask();
-        const double* phi = violations(A);
-        if (std::all_of(phi, phi + k, [](double value) { return value == 0; })) continue;
-        std::fill(y, y + n, 0.0);
-        for (int c = 0; c < k; ++c) y[c] = -phi[c];
-        const OrthogonalBasis& q = bases_[A].q;
-        q.solve_R_transposed(y);
-        q.apply(y);
-        tables_.bodies.to_twist(maps(A), y, twist);
-        correction = std::max(correction, size_of(twist));
-        place_from(A, A, twist);
-    }
+    for (const double move : moves_) correction = std::max(correction, move);
     if (correction > 0)
-        for (int e = 0; e < layout.n_elements(); ++e) take_differences(e);
+        for_each_item(layout.n_elements(), least_shared, [&](int e) { take_differences(e); });
     return correction;
 }
 

@@ -65,13 +65,11 @@ private:
         std::vector<double> X, low;
     };
 
-    void add(const Set& from, int A_from, Set& to, int A);
-    void displace(const Set& from, int A_from, const double* twist, Set& to, int A);
+    void displace(const Set& from, int A_from, const double* twist, double factor, Set& to, int A);
 
     Set sets_[2];
     int current_ = 0, kept_ = 0;
     std::vector<double> times_, dX_;
-    std::vector<double> displacement_, twist_;
 };
 
 /// The constraints at these nodes: maps, bases of constraint and free directions, violations. Known states at
@@ -111,8 +109,10 @@ public:
 
 private:
     void begin_constraining();
-    void constrain_node(int e, int B, bool same_choices, double& sum);
-    double followed(int e, int B, int c);
+    void build_basis(int A, bool same_choices);
+    void find_changes(int e, int B, double* work);
+    void find_violations(int e, int B, double& sum);
+    double followed(int e, int B, int c, double* work) const;
 
     std::vector<double> maps_;
     std::vector<ConstraintBasis> bases_;
@@ -120,7 +120,8 @@ private:
     const std::vector<int>* first_rows_ = nullptr;   // those of the state at the first node
     std::vector<double> scaled_, phi_;               // violations times the scales of bases, and as they are
     bool has_start_ = false;                         // those of the first node, where its state is known
-    std::vector<double> pivots_, work_;
+    std::vector<double> pivots_, moves_;             // moves_: sizes of corrections
+    std::vector<std::vector<double>> work_;          // of each thread: numbers of a twist, a twist
     bool near_ = true;
 };
 

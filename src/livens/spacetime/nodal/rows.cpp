@@ -8,23 +8,36 @@
 #include <cmath>
 
 #include "livens/dynamics/instant/instant.h"
+#include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/nodal/nodes.h"
 
 namespace livens {
 
 NodalRows::NodalRows(const ModelTables& tables, const ElementRule& rule)
-    : tables_(tables), rule_(rule), loads_(tables, rule), q_(tables.n_twists),
-      work_(12 * tables.bodies.size()), second_(work_)
+    : tables_(tables), rule_(rule), loads_(tables, rule), size_of_node_(12 * tables.n_bodies()),
+      workspaces_(1, workspace())
 {
-    for (EndMomentum& momentum : momenta_) momentum.scaled = momentum.about_reference = q_;
+    for (EndMomentum& momentum : momenta_)
+        momentum.scaled = momentum.about_reference =
+            std::vector<double>(static_cast<std::size_t>(tables.n_twists), 0.0);
+}
+
+RowWorkspace NodalRows::workspace() const
+{
+    RowWorkspace made;
+    made.work.assign(static_cast<std::size_t>(size_of_node_), 0.0);
+    made.second = made.work;
+    made.q.assign(static_cast<std::size_t>(tables_.n_twists), 0.0);
+    return made;
 }
 
 void NodalRows::open(const WindowLayout& layout)
 {
     int n_active = 0;
     for (int A = 0; A < layout.n_nodes(); ++A) n_active += layout.is_active(A) ? 1 : 0;
-    raw_.resize(layout.n_nodes() * work_.size());
+    raw_.resize(static_cast<std::size_t>(layout.n_nodes() * size_of_node_));
+    are_finite_.resize(static_cast<std::size_t>(layout.n_nodes()));
     impulses_.resize(layout.n_nodes() * tables_.rank);
     reduced_.resize(n_active * tables_.freedoms());
 }
@@ -36,40 +49,50 @@ void NodalRows::start_with(const InstantState& first)
     for (const double p : first.momentum) largest = std::max(largest, std::abs(p));
     start_terms_ = largest;
     if (rule_.points == Points::lobatto) return;
-    momenta_[0].columns.resize(work_.size());
-    tables_.bodies.rates_of(first.X.data(), first.velocity.data(), work_.data());
-    tables_.bodies.times_mass(work_.data(), 1.0, momenta_[0].columns.data());
+    double* const rates = workspaces_[0].work.data();
+    momenta_[0].columns.resize(static_cast<std::size_t>(size_of_node_));
+    tables_.bodies.rates_of(first.X.data(), first.velocity.data(), rates);
+    tables_.bodies.times_mass(rates, 1.0, momenta_[0].columns.data());
 }
 
 /// raw += h^-1 sum_B k_AB (X_B - X_0) m + F_A of element e at its local node A; the first element at a node
 /// sets it. The weight is constant, and its integral against M_A is h w_A to the last digit.
-void NodalRows::add_element(const WindowLayout& layout, const Nodes& nodes, int e, int A, double* raw)
+void NodalRows::add_element(const WindowLayout& layout, const Nodes& nodes, int e, int A, double* raw,
+                            RowWorkspace& at) const
 {
     const int n_nodes = rule_.size();
     const double* k = rule_.k.data() + A * n_nodes;
     const double* y = nodes.dX(e, 1);
     double factor = k[1] / layout.h(e);
     if (n_nodes > 2) {
-        std::ranges::fill(work_, 0.0);
-        for (int B = 1; B < n_nodes; ++B) accumulate(work_.data(), k[B], nodes.dX(e, B), work_.size());
-        y = work_.data();
+        std::ranges::fill(at.work, 0.0);
+        for (int B = 1; B < n_nodes; ++B) accumulate(at.work.data(), k[B], nodes.dX(e, B), at.work.size());
+        y = at.work.data();
         factor = 1 / layout.h(e);
     }
     const bool is_first = e == 0 || A > 0;
-    double* sum = is_first ? raw : second_.data();
+    double* sum = is_first ? raw : at.second.data();
     tables_.bodies.times_mass(y, factor, sum);
-    if (!is_first) accumulate(raw, 1, sum, work_.size());
+    if (!is_first) accumulate(raw, 1, sum, at.work.size());
     tables_.bodies.add_weight(layout.h(e) * rule_.weights[A], raw);
-    if (!tables_.model->loads().empty()) accumulate(raw, 1, loads_.forces(e, A), work_.size());
+    if (!tables_.model->loads().empty()) accumulate(raw, 1, loads_.forces(e, A), at.work.size());
 }
 
 void NodalRows::twist_row(const WindowLayout& layout, const Nodes& nodes, int A, double* out)
 {
-    double* raw = raw_.data() + A * work_.size();
+    take_row(layout, nodes, A, workspaces_[0]);
+    std::ranges::copy(workspaces_[0].q, out);
+}
+
+/// N^T raw into q.
+void NodalRows::take_row(const WindowLayout& layout, const Nodes& nodes, int A, RowWorkspace& at)
+{
+    double* raw = raw_.data() + A * size_of_node_;
     for (int e = layout.first_element(A); e <= layout.last_element(A); ++e)
-        add_element(layout, nodes, e, A - e * rule_.degree, raw);
-    if (layout.points == Points::radau) accumulate(raw, rule_.c[A], momenta_[0].columns.data(), work_.size());
-    tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), raw, out);
+        add_element(layout, nodes, e, A - e * rule_.degree, raw, at);
+    if (layout.points == Points::radau)
+        accumulate(raw, rule_.c[A], momenta_[0].columns.data(), at.work.size());
+    tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), raw, at.q.data());
 }
 
 void EndMomentum::add_to(const ModelTables& tables, const double* maps, double sign, double* y) const
@@ -83,19 +106,20 @@ void EndMomentum::add_to(const ModelTables& tables, const double* maps, double s
 }
 
 /// lambda_A from the rows in the constraint directions; what is left are the reduced rows.
-bool NodalRows::eliminate(const WindowLayout& layout, const Nodes& nodes, int A, double* reduced)
+bool NodalRows::eliminate(const WindowLayout& layout, const Nodes& nodes, int A, double* reduced,
+                          RowWorkspace& at)
 {
     const ConstraintBasis& basis = nodes.basis(A);
     const int k = tables_.rank, f = tables_.freedoms(), n = tables_.n_twists;
-    double* y = work_.data();
-    tables_.bodies.to_scaled_rows(nodes.maps(A), q_.data(), y);
+    double* y = at.work.data();
+    tables_.bodies.to_scaled_rows(nodes.maps(A), at.q.data(), y);
     const EndMomentum& given = momenta_[A == 0 ? 0 : 1];
     const bool has_momentum = A == 0 || (layout.P_last && A == layout.n_nodes() - 1);
     if (has_momentum && layout.is_unknown(A))
         given.add_to(tables_, nodes.maps(A), A == 0 ? 1 : -1, y);
     else if (has_momentum)
         for (int i = 0; i < n; ++i) y[i] += given.scaled[i];
-    double terms = terms_, size = size_, sum = 0;
+    double terms = at.terms, size = at.size, sum = 0;
     for (int i = 0; i < n; ++i) terms = std::max(terms, std::abs(y[i]));
     basis.q.apply_transposed(y);
     for (int i = 0; i < f; ++i) {
@@ -103,8 +127,8 @@ bool NodalRows::eliminate(const WindowLayout& layout, const Nodes& nodes, int A,
         size = std::max(size, std::abs(reduced[i]));
         sum += std::abs(reduced[i]);   // keeps a nan, which a maximum would lose
     }
-    terms_ = terms;
-    size_ = size;
+    at.terms = terms;
+    at.size = size;
     basis.q.solve_R(y);
     double* impulses = own_impulses(A);
     for (int c = 0; c < k; ++c) impulses[c] = y[c] * basis.row_scale[c];
@@ -113,19 +137,29 @@ bool NodalRows::eliminate(const WindowLayout& layout, const Nodes& nodes, int A,
 
 bool NodalRows::evaluate(const WindowLayout& layout, const Nodes& nodes)
 {
-    terms_ = start_terms_;
-    size_ = 0;
-    bool are_finite = true;
+    const auto n_threads = static_cast<std::size_t>(Crew::size());
+    if (workspaces_.size() < n_threads) workspaces_.resize(n_threads, workspace());
+    for (RowWorkspace& one : workspaces_) one.size = one.terms = 0;
     loads_.evaluate(layout, nodes);
-    double* reduced = reduced_.data();
-    for (int A = 0; A < layout.n_nodes(); ++A) {
-        if (!layout.is_active(A)) continue;
-        Patience::ask();
-        twist_row(layout, nodes, A, q_.data());
-        are_finite = eliminate(layout, nodes, A, reduced) && are_finite;
-        reduced += tables_.freedoms();
+    const int first = layout.is_active(0) ? 0 : 1;   // all but the ends are active
+    in_shares(layout.n_nodes(), least_shared, [&](int slot, int begin, int end) {
+        RowWorkspace& at = workspaces_[slot];
+        for (int A = begin; A < end; ++A) {
+            are_finite_[A] = 1;
+            if (!layout.is_active(A)) continue;
+            Patience::ask();
+            take_row(layout, nodes, A, at);
+            double* const reduced = reduced_.data() + (A - first) * tables_.freedoms();
+            are_finite_[A] = eliminate(layout, nodes, A, reduced, at);
+        }
+    });
+    size_ = 0;
+    terms_ = start_terms_;
+    for (const RowWorkspace& one : workspaces_) {
+        size_ = std::max(size_, one.size);
+        terms_ = std::max(terms_, one.terms);
     }
-    return are_finite && std::isfinite(terms_);
+    return std::ranges::all_of(are_finite_, [](char is) { return is != 0; }) && std::isfinite(terms_);
 }
 
 void NodalRows::subtract(const ConstraintBasis& basis, const double* impulses, double* out) const

@@ -26,6 +26,13 @@ struct EndMomentum {
     void add_to(const ModelTables& tables, const double* maps, double sign, double* y) const;
 };
 
+/// Of a thread.
+struct RowWorkspace {
+    std::vector<double> work, second;   ///< 12 a body; of the second element at a node
+    std::vector<double> q;              ///< N^T raw
+    double size = 0, terms = 0;         ///< the largest so far
+};
+
 /// For every active node A
 ///
 ///     N^T [ sum_e ( h^-1 sum_B k_AB (X_B - X_0) m + F_A ) + P(0) - P(T) - W_A G^T lambda_A ] = 0
@@ -56,23 +63,27 @@ public:
     /// For impulses that were found elsewhere.
     double* own_impulses(int A) { return impulses_.data() + A * tables_.rank; }
     /// The row before N^T and multipliers, at an active node.
-    const double* raw(int A) const { return raw_.data() + A * work_.size(); }
+    const double* raw(int A) const { return raw_.data() + A * size_of_node_; }
     /// out <- N^T of the row without multipliers and end momenta, about the centres of mass, at any node.
     void twist_row(const WindowLayout& layout, const Nodes& nodes, int A, double* out);
     /// out -= G^T impulses, in the order of the node's basis.
     void subtract(const ConstraintBasis& basis, const double* impulses, double* out) const;
 
 private:
-    void add_element(const WindowLayout& layout, const Nodes& nodes, int e, int A, double* raw);
-    bool eliminate(const WindowLayout& layout, const Nodes& nodes, int A, double* reduced);
+    RowWorkspace workspace() const;
+    void take_row(const WindowLayout& layout, const Nodes& nodes, int A, RowWorkspace& at);
+    void add_element(const WindowLayout& layout, const Nodes& nodes, int e, int A, double* raw,
+                     RowWorkspace& at) const;
+    bool eliminate(const WindowLayout& layout, const Nodes& nodes, int A, double* reduced, RowWorkspace& at);
 
     const ModelTables& tables_;
     const ElementRule& rule_;
     EndMomentum momenta_[2];
     ElementLoads loads_;
-    std::vector<double> raw_, q_;   // q_: N^T raw
-    std::vector<double> impulses_, reduced_;
-    std::vector<double> work_, second_;   // 12 a body; of the second element at a node
+    std::ptrdiff_t size_of_node_;   // 12 a body
+    std::vector<double> raw_, impulses_, reduced_;
+    std::vector<char> are_finite_;          // of nodes
+    std::vector<RowWorkspace> workspaces_;
     double size_ = 0, terms_ = 0, start_terms_ = 0;
 };
 

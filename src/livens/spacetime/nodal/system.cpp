@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "livens/dynamics/instant/instant.h"
+#include "livens/solvers/crew.h"
 #include "livens/spacetime/nodal/elimination.h"
 
 namespace livens {
@@ -74,6 +75,12 @@ std::size_t NodalSystem::n_node_numbers() const
 {
     const int n_known = (layout_.X_first ? 1 : 0) + (layout_.X_last ? 1 : 0);
     return static_cast<std::size_t>(layout_.n_nodes() - n_known) * static_cast<std::size_t>(tables_.n_twists);
+}
+
+/// Of an unknown node's twist among all.
+std::ptrdiff_t NodalSystem::place_of(int A) const
+{
+    return static_cast<std::ptrdiff_t>(layout_.X_first ? A - 1 : A) * tables_.n_twists;
 }
 
 int NodalSystem::n_unknowns() const
@@ -182,13 +189,13 @@ void NodalSystem::solve_rows(const NodalSystem& other, std::span<const double> r
     const double* range = pending_ ? range_.data() : nullptr;
     elimination_->stand_at(other.tables_, other.nodes_);
     elimination_->solve(rows, range, dx.data());
-    double* twist = dx.data();
-    for (int A = 0; A < layout_.n_nodes(); ++A) {
-        if (!layout_.is_unknown(A)) continue;
-        other.tables_.bodies.to_twist(other.nodes_.maps(A), twist, twist);
-        twist += tables_.n_twists;
-    }
+    for_each_item(layout_.n_nodes(), least_shared, [&](int A) {
+        if (!layout_.is_unknown(A)) return;
+        double* const own = dx.data() + place_of(A);
+        other.tables_.bodies.to_twist(other.nodes_.maps(A), own, own);
+    });
     if (conditions_ == nullptr) return;
+    double* const twist = dx.data() + n_node_numbers();
     const std::vector<double> along(twist, twist + conditions_->n_border());
     conditions_->to_momenta(along.data(), twist);
 }
@@ -196,12 +203,9 @@ void NodalSystem::solve_rows(const NodalSystem& other, std::span<const double> r
 bool NodalSystem::move(std::span<const double> dx, double damping)
 {
     nodes_.begin_move();
-    const double* twist = dx.data();
-    for (int A = 0; A < layout_.n_nodes(); ++A) {
-        if (!layout_.is_unknown(A)) continue;
-        nodes_.move(A, twist, damping);
-        twist += tables_.n_twists;
-    }
+    for_each_item(layout_.n_nodes(), least_shared, [&](int A) {
+        if (layout_.is_unknown(A)) nodes_.move(A, dx.data() + place_of(A), damping);
+    });
     if (conditions_ != nullptr) conditions_->move(dx.subspan(n_node_numbers()), damping);
     pending_ = false;
     if (!nodes_.constrain(layout_, in_use_)) return false;
@@ -237,8 +241,16 @@ bool NodalSystem::pull(bool are_placed)
 /// Motion and impulse inside the elements.
 void NodalSystem::measure()
 {
-    motion_ = impulse_ = 0;
-    for (int e = 0; e < layout_.n_elements(); ++e) impulse_ = std::max(impulse_, impulse_of(e, motion_));
+    extents_.assign(static_cast<std::size_t>(Crew::size()), {});
+    in_shares(layout_.n_elements(), least_shared, [&](int slot, int begin, int end) {
+        auto& [motion, impulse] = extents_[slot];
+        for (int e = begin; e < end; ++e) impulse = std::max(impulse, impulse_of(e, motion));
+    });
+    extent_ = {};
+    for (const auto& [motion, impulse] : extents_) {
+        extent_.motion = std::max(extent_.motion, motion);
+        extent_.impulse = std::max(extent_.impulse, impulse);
+    }
 }
 
 /// Of an element: mass times motion over h, in scaled rows; `motion` grows to what moves in it, in lengths
@@ -284,16 +296,16 @@ double NodalSystem::largest_k() const
 }
 
 /// A body may fly many lengths while its turns need their digits all the same.
-double NodalSystem::scale() const { return std::clamp(motion_, 1e-6, 1.0); }
+double NodalSystem::scale() const { return std::clamp(extent_.motion, 1e-6, 1.0); }
 
 /// The sums over k_AB cancel: their rounding is that of their largest term.
 NewtonProblem::Rows NodalSystem::rows() const
 {
-    const double terms = std::max(impulse_, rows_.terms());
+    const double terms = std::max(extent_.impulse, rows_.terms());
     // what conditions miss counts by its share of their scales
     const double missing = conditions_ != nullptr ? terms * conditions_->largest() : 0;
     return {std::max(rows_.size(), missing), terms,
-            1e-16 * (largest_k() * impulse_ + rows_.terms() + tangent_.load_rounding()),
+            1e-16 * (largest_k() * extent_.impulse + rows_.terms() + tangent_.load_rounding()),
             layout_.n_elements() == 1 && conditions_ == nullptr, correction_};
 }
 

@@ -15,6 +15,11 @@ namespace livens::inline spacetime_internal {
 
 class Elimination;
 
+/// Of elements: what moves inside, in lengths and radians, and mass times motion over h, in scaled rows.
+struct Extent {
+    double motion = 0, impulse = 0;
+};
+
 /// Rows and constraints of a stretch of elements, whose unknowns are the twists of its unknown nodes, one
 /// node after the other. Multipliers are eliminated; every move ends with a pull back onto the constraints.
 class NodalSystem final : public NewtonProblem {
@@ -85,6 +90,7 @@ private:
     bool takes_bodies_apart() const;
     void form_all(Elimination& elimination);
     std::size_t n_node_numbers() const;
+    std::ptrdiff_t place_of(int A) const;
     std::unique_ptr<Elimination> on_null_spaces() const;
     bool evaluate_conditions();
     bool pull(bool are_placed);
@@ -103,10 +109,10 @@ private:
     bool in_use_ = false;                   // a tangent is: null spaces vary smoothly
     bool pending_ = false;                  // violations are left to the next linear step
     double correction_ = 0;                 // largest pull of the last move
-    double motion_ = 0;                     // largest inside an element, in lengths and radians
-    double impulse_ = 0;                    // likewise: mass times motion over h, in scaled rows
+    Extent extent_;                         // the largest inside of elements
     long long evaluations_ = 0;
     std::vector<double> range_;   // violations that are left, in the basis
+    std::vector<Extent> extents_;   // of each thread's elements
 };
 
 }   // namespace livens::inline spacetime_internal

@@ -10,6 +10,7 @@
 
 #include "livens/dynamics/rows/twist.h"
 #include "livens/dynamics/rows/twist_blocks.h"
+#include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 #include "livens/solvers/row_functions.h"
 #include "livens/spacetime/nodal/nodes.h"
@@ -57,68 +58,91 @@ private:
 
 }   // namespace
 
-Tangent::Tangent(const ModelTables& tables, const ElementRule& rule) : tables_(tables), rule_(rule)
+Tangent::Tangent(const ModelTables& tables, const ElementRule& rule) : tables_(tables), rule_(rule) {}
+
+Tangent::Workspace Tangent::workspace() const
 {
-    const std::size_t size = 12 * tables.bodies.size();
-    blocks_.assign(3 * size, 0.0);
-    for (auto* v : {&total_, &X_, &V_}) v->assign(size, 0.0);
+    Workspace made;
+    const std::size_t size = 12 * tables_.bodies.size();
+    made.blocks.assign(3 * size, 0.0);
+    for (auto* v : {&made.total, &made.X, &made.V}) v->assign(size, 0.0);
+    return made;
 }
 
 void Tangent::form(const WindowLayout& layout, const Nodes& nodes, const NodalRows& rows, TangentSink& sink)
 {
+    const Point of{layout, nodes, rows};
+    const bool is_divided = sink.of_thread(0) != nullptr;
+    const auto n_threads = static_cast<std::size_t>(is_divided ? Crew::size() : 1);
+    while (workspaces_.size() < n_threads) workspaces_.push_back(workspace());
+    load_roundings_.assign(static_cast<std::size_t>(layout.n_elements()), 0.0);
+    const auto form_share = [&](int slot, int begin, int end) {
+        Workspace& at = workspaces_[slot];
+        at.sink = is_divided ? sink.of_thread(slot) : &sink;
+        for (int e = begin; e < end; ++e) form_element(of, e, at);
+    };
+    if (is_divided)
+        in_shares(layout.n_elements(), least_shared, form_share);
+    else
+        form_share(0, 0, layout.n_elements());
+}
+
+void Tangent::form_element(const Point& of, int e, Workspace& at)
+{
+    const auto& [layout, nodes, rows] = of;
+    TangentSink& sink = *at.sink;
     double H[9] = {};
     // of mass alone, as the elements' own numbers are
     const bool is_symmetric = tables_.loads.with_tangent.empty() && rule_.points == Points::lobatto;
-    load_roundings_.assign(static_cast<std::size_t>(layout.n_elements()), 0.0);
-    for (int e = 0; e < layout.n_elements(); ++e) {
-        Patience::ask();
-        if (!tables_.loads.with_tangent.empty()) evaluate_loads(layout, nodes, rows, e);
-        for (int a = 0; a < rule_.size(); ++a) {
-            const int A = e * rule_.degree + a;
-            if (!layout.is_active(A)) continue;
-            for (int b = 0; b < rule_.size(); ++b) {
-                const int B = e * rule_.degree + b;
-                if (!layout.is_unknown(B)) continue;
-                if (b < a && is_symmetric && layout.is_unknown(A) && layout.is_active(B) &&
-                    sink.take_transposed(e, A, B))
-                    continue;
-                sink.open(e, A, B);
-                const double factor = rule_.k[a * rule_.size() + b] / layout.h(e);
-                for (int body = 0; body < tables_.n_bodies(); ++body) {
-                    if (tables_.bodies[body].dofs == 6)
-                        tables_.bodies.spin_mass(body, nodes.X(A), nodes.X(B), H);
-                    sink.mass(body, factor, H);
-                }
-                if (A == B && (a > 0 || e == 0)) add_node_terms(nodes, rows, A, sink);
-                if (!tables_.loads.with_tangent.empty()) add_loads(layout, nodes, e, a, b, sink);
-                sink.close();
+    Patience::ask();
+    if (!tables_.loads.with_tangent.empty()) evaluate_loads(of, e, at);
+    for (int a = 0; a < rule_.size(); ++a) {
+        const int A = e * rule_.degree + a;
+        if (!layout.is_active(A)) continue;
+        for (int b = 0; b < rule_.size(); ++b) {
+            const int B = e * rule_.degree + b;
+            if (!layout.is_unknown(B)) continue;
+            if (b < a && is_symmetric && layout.is_unknown(A) && layout.is_active(B) &&
+                sink.take_transposed(e, A, B))
+                continue;
+            sink.open(e, A, B);
+            const double factor = rule_.k[a * rule_.size() + b] / layout.h(e);
+            for (int body = 0; body < tables_.n_bodies(); ++body) {
+                if (tables_.bodies[body].dofs == 6)
+                    tables_.bodies.spin_mass(body, nodes.X(A), nodes.X(B), H);
+                sink.mass(body, factor, H);
             }
+            if (A == B && (a > 0 || e == 0)) add_node_terms(of, A, at);
+            if (!tables_.loads.with_tangent.empty()) add_loads(of, e, a, b, at);
+            sink.close();
         }
     }
 }
 
 /// What stands at (A, A) besides mass and loads: rows that turn with the bodies, Hessians of constraints.
-void Tangent::add_node_terms(const Nodes& nodes, const NodalRows& rows, int A, TangentSink& sink)
+void Tangent::add_node_terms(const Point& of, int A, Workspace& at) const
 {
-    std::copy_n(rows.raw(A), total_.size(), total_.data());
-    rows.subtract(nodes.basis(A), rows.impulses(A), total_.data());
-    std::fill(blocks_.begin(), blocks_.end(), 0.0);
+    const auto& [layout, nodes, rows] = of;
+    std::copy_n(rows.raw(A), at.total.size(), at.total.data());
+    rows.subtract(nodes.basis(A), rows.impulses(A), at.total.data());
+    std::fill(at.blocks.begin(), at.blocks.end(), 0.0);
     for (int b = 0; b < tables_.n_bodies(); ++b)
         if (tables_.bodies[b].dofs == 6)
-            twist::add_geometric(nodes.X(A) + 12 * b, total_.data() + 12 * b, blocks_.data() + 36 * b, 6);
-    add_constraints(nodes, rows, A, sink);
+            twist::add_geometric(nodes.X(A) + 12 * b, at.total.data() + 12 * b, at.blocks.data() + 36 * b, 6);
+    add_constraints(of, A, at);
     double scaled[36];
     for (int b = 0; b < tables_.n_bodies(); ++b) {
-        scale_block(tables_, nodes.maps(A), b, nodes.maps(A), b, blocks_.data() + 36 * b, scaled);
-        sink.block(b, b, scaled);
+        scale_block(tables_, nodes.maps(A), b, nodes.maps(A), b, at.blocks.data() + 36 * b, scaled);
+        at.sink->block(b, b, scaled);
     }
 }
 
-/// - W_A sum lambda K: of bodies with themselves into blocks_, the others to the sink, what rows of a joint
+/// - W_A sum lambda K: of bodies with themselves into the blocks, the others to the sink, what rows of a joint
 /// make of the same two bodies together.
-void Tangent::add_constraints(const Nodes& nodes, const NodalRows& rows, int A, TangentSink& sink)
+void Tangent::add_constraints(const Point& of, int A, Workspace& at) const
 {
-    Crossing crossing{tables_, nodes, A, sink};
+    const auto& [layout, nodes, rows] = of;
+    Crossing crossing{tables_, nodes, A, *at.sink};
     const ConstraintBasis& basis = nodes.basis(A);
     for (int c = 0; c < tables_.rank; ++c) {
         const auto& table = tables_.rows[basis.rows[c]];
@@ -126,7 +150,7 @@ void Tangent::add_constraints(const Nodes& nodes, const NodalRows& rows, int A, 
         for (int r = 0; r < table.n_sides; ++r) {
             for (int s = 0; s < table.n_sides; ++s) {
                 const int i = table.bodies[r], j = table.bodies[s];
-                double* to = r == s ? blocks_.data() + 36 * i : crossing.of(i, j);
+                double* to = r == s ? at.blocks.data() + 36 * i : crossing.of(i, j);
                 const double *X_i = nodes.X(A) + 12 * i, *X_j = nodes.X(A) + 12 * j;
                 const double factor = -rows.impulses(A)[c];
                 if (table.is_quadratic)
@@ -142,19 +166,20 @@ void Tangent::add_constraints(const Nodes& nodes, const NodalRows& rows, int A, 
 }
 
 /// dF/dX and dF/dX' of all loads at the load points of an element.
-void Tangent::evaluate_loads(const WindowLayout& layout, const Nodes& nodes, const NodalRows& rows, int e)
+void Tangent::evaluate_loads(const Point& of, int e, Workspace& at)
 {
+    const auto& [layout, nodes, rows] = of;
     const std::size_t n = tables_.loads.with_tangent.size();
-    load_tangents_.resize(n * rule_.loads.points.size());
+    at.loads.resize(n * rule_.loads.points.size());
     for (int c = 0; c < rule_.degree; ++c) {
-        rows.loads().interpolate(layout, nodes, e, c, X_.data(), V_.data());
+        rows.loads().interpolate(layout, nodes, e, c, at.X.data(), at.V.data());
         const std::span<const double> angles = rows.loads().angles(e, c);
         for (std::size_t l = 0; l < n; ++l) {
             const Load& load = tables_.model->loads()[tables_.loads.with_tangent[l]];
-            const Instant at = layout.load_point(rule_, e, c);
-            const LoadArguments arguments =
-                tables_.loads.arguments(tables_.loads.with_tangent[l], at, X_.data(), V_.data(), angles);
-            LoadTangent& tangent = load_tangents_[c * n + l];
+            const Instant instant = layout.load_point(rule_, e, c);
+            const LoadArguments arguments = tables_.loads.arguments(tables_.loads.with_tangent[l], instant,
+                                                                    at.X.data(), at.V.data(), angles);
+            LoadTangent& tangent = at.loads[c * n + l];
             tangent = LoadTangent(load.bodies.size(), load.n_acted);
             load.tangent(arguments, tangent);
             const double size = std::abs(layout.h(e)) * load_terms(tables_, load, arguments, tangent);
@@ -164,9 +189,9 @@ void Tangent::evaluate_loads(const WindowLayout& layout, const Nodes& nodes, con
 }
 
 /// sum_c h w_c M_A(s_c) N_A^T [ M_B(s_c) dF/dX + h^-1 M_B'(s_c) dF/dX' ] N_B.
-void Tangent::add_loads(const WindowLayout& layout, const Nodes& nodes, int e, int a, int b,
-                        TangentSink& sink)
+void Tangent::add_loads(const Point& of, int e, int a, int b, Workspace& at) const
 {
+    const auto& [layout, nodes, rows] = of;
     const std::size_t n = tables_.loads.with_tangent.size();
     const int A = e * rule_.degree + a, B = e * rule_.degree + b, size = rule_.size();
     const RowFunctions& sums = row_functions();
@@ -179,7 +204,7 @@ void Tangent::add_loads(const WindowLayout& layout, const Nodes& nodes, int e, i
                 if (i == world || j == world) continue;
                 Matrix<12, 12> K{};
                 for (int c = 0; c < rule_.degree; ++c) {
-                    const LoadTangent& tangent = load_tangents_[c * n + l];
+                    const LoadTangent& tangent = at.loads[c * n + l];
                     const double w = rule_.loads.weights[c] * rule_.M[c * size + a];
                     const double by_X = layout.h(e) * w * rule_.M[c * size + b],
                                  by_V = w * rule_.dM[c * size + b];
@@ -194,7 +219,7 @@ void Tangent::add_loads(const WindowLayout& layout, const Nodes& nodes, int e, i
                 std::fill(block, block + 36, 0.0);
                 add_reduced(K, nodes.X(A) + 12 * i, nodes.X(B) + 12 * j, tables_.bodies[j].dofs, block);
                 scale_block(tables_, nodes.maps(A), i, nodes.maps(B), j, block, scaled);
-                sink.block(i, j, scaled);
+                at.sink->block(i, j, scaled);
             }
         }
     }

@@ -13,8 +13,8 @@ namespace livens::inline spacetime_internal {
 class Nodes;
 class NodalRows;
 
-/// Takes a tangent pair by pair of nodes A, B that share element e: open(), then mass() of every body,
-/// block() in any number, then close(). Where two elements share both nodes their blocks add up.
+/// Takes a tangent pair by pair of nodes A, B that share element e: open(), then mass() and block() in any
+/// number, then close(). Where two elements share both nodes their blocks add up.
 class TangentSink {
 public:
     virtual ~TangentSink() = default;
@@ -27,6 +27,8 @@ public:
     /// In place of all these, where (A, B) is the transpose of (B, A), which was closed before; false: it is
     /// not taken.
     virtual bool take_transposed(int /*e*/, int /*A*/, int /*B*/) { return false; }
+    /// The sink of a thread, for elements of its own; null: all come from one thread, to this.
+    virtual TangentSink* of_thread(int /*slot*/) { return nullptr; }
 };
 
 /// d(rows at active nodes)/d(twists of unknown nodes), rows and twists scaled by the maps of their nodes,
@@ -47,17 +49,30 @@ public:
     double load_rounding(int e) const { return load_roundings_.empty() ? 0 : load_roundings_[e]; }
 
 private:
-    void evaluate_loads(const WindowLayout& layout, const Nodes& nodes, const NodalRows& rows, int e);
-    void add_node_terms(const Nodes& nodes, const NodalRows& rows, int A, TangentSink& sink);
-    void add_constraints(const Nodes& nodes, const NodalRows& rows, int A, TangentSink& sink);
-    void add_loads(const WindowLayout& layout, const Nodes& nodes, int e, int a, int b, TangentSink& sink);
+    /// Of a thread, with its sink.
+    struct Workspace {
+        TangentSink* sink = nullptr;
+        std::vector<LoadTangent> loads;     // of one element: those with tangents, Gauss point after point
+        std::vector<double> blocks;         // 36 a body
+        std::vector<double> total, X, V;    // 12 a body
+    };
+    /// What a tangent is made of.
+    struct Point {
+        const WindowLayout& layout;
+        const Nodes& nodes;
+        const NodalRows& rows;
+    };
+    Workspace workspace() const;
+    void form_element(const Point& of, int e, Workspace& at);
+    void evaluate_loads(const Point& of, int e, Workspace& at);
+    void add_node_terms(const Point& of, int A, Workspace& at) const;
+    void add_constraints(const Point& of, int A, Workspace& at) const;
+    void add_loads(const Point& of, int e, int a, int b, Workspace& at) const;
 
     const ModelTables& tables_;
     const ElementRule& rule_;
-    std::vector<LoadTangent> load_tangents_;   // of one element: loads with tangents, Gauss point after point
-    std::vector<double> blocks_;               // 36 a body
-    std::vector<double> total_, X_, V_;        // 12 a body
-    std::vector<double> load_roundings_;       // of the elements
+    std::vector<Workspace> workspaces_;
+    std::vector<double> load_roundings_;   // of the elements
 };
 
 }   // namespace livens::inline spacetime_internal

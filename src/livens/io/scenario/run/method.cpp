@@ -168,6 +168,17 @@ void check_mixed(const Section& section, const Mixed& mixed)
                       {"nurbs are B-splines with weights", "without weights they are basis = \"bspline\""});
 }
 
+Key threads()
+{
+    return Key{"threads", types::integer,
+               "Number of threads that solve one motion; 0: one per processor. They share elements that are "
+               "solved together: with conditions at both ends, in the blocks of mixed, and in lobatto with a "
+               "`window`. From a given state elements are otherwise solved one after the other, which gains "
+               "nothing. No bit of a result depends on the number of threads.",
+               "", "1"}
+        .within({0, 256});
+}
+
 /// A key of every family that is an option of solve(), or what is told of a motion.
 struct OptionKey {
     Key key;
@@ -192,6 +203,7 @@ const std::vector<OptionKey>& option_keys()
              "Maximum number of Newton iterations in one element (mixed: in one block).", "", "30"}
              .within({1, 1000}),
          &SolveOptions::max_iterations},
+        {threads(), &SolveOptions::threads},
         {choice<SolveOptions::Estimate>(
              "estimate",
              "How the error of the motion is estimated. second: everything is solved once more on the same "

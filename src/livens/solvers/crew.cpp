@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A few threads that wait for shares of loops. Which items a share has depends on the number of threads, what
+// an item does must not: see in_shares().
+#include "livens/solvers/crew.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "livens/solvers/patience.h"
+
+namespace livens::inline solvers_internal {
+
+namespace {
+
+/// The one who waits for the others asks that often whether they are still wanted.
+constexpr auto between_questions = std::chrono::milliseconds(10);
+
+using Share = std::function<void(int, int, int)>;
+
+}   // namespace
+
+class CrewMembers {
+public:
+    explicit CrewMembers(int n) : wanted(std::min(n, Crew::most_threads)) {}
+    CrewMembers(const CrewMembers&) = delete;
+    CrewMembers& operator=(const CrewMembers&) = delete;
+    ~CrewMembers()
+    {
+        {
+            const std::lock_guard lock(mutex);
+            is_over = true;
+        }
+        begins.notify_all();
+    }
+
+    void run(int n, int least, const Share& share);
+
+    int wanted;
+    std::mutex mutex;
+    std::condition_variable begins, ends;
+    const Share* work = nullptr;   // of the round at hand
+    int n_items = 0, n_shares = 0, n_left = 0;
+    long round = 0;
+    bool is_over = false;
+    std::atomic<bool> is_stopped = false;
+    std::vector<std::exception_ptr> thrown;   // of each slot
+    bool is_started = false;
+    std::vector<std::jthread> threads;   // joined first
+
+private:
+    void start();
+    void wait_for_rounds(int slot);
+    void do_share(int slot);
+    void wait_for_others();
+};
+
+namespace {
+
+thread_local CrewMembers* current = nullptr;
+
+}   // namespace
+
+Crew::Crew(int n_threads) : outer_(current)
+{
+    if (n_threads < 2 || (current != nullptr && current->wanted == n_threads)) return;
+    members_ = std::make_unique<CrewMembers>(n_threads);
+    current = members_.get();
+}
+
+Crew::~Crew() { current = outer_; }
+
+int Crew::size() { return current != nullptr ? current->wanted : 1; }
+
+bool Crew::divides(int n, int least) { return current != nullptr && n / 2 >= least; }
+
+void CrewMembers::start()
+{
+    is_started = true;
+    try {
+        for (int slot = 1; slot < wanted; ++slot)
+            threads.emplace_back([this, slot] { wait_for_rounds(slot); });
+    } catch (const std::system_error&) {   // fewer do it, too
+    }
+    thrown.resize(threads.size() + 1);
+}
+
+void CrewMembers::do_share(int slot)
+{
+    const auto bound = [&](int share) {
+        return static_cast<int>(static_cast<long long>(n_items) * share / n_shares);
+    };
+    try {
+        (*work)(slot, bound(slot), bound(slot + 1));
+    } catch (...) {
+        thrown[static_cast<std::size_t>(slot)] = std::current_exception();
+    }
+}
+
+void CrewMembers::wait_for_rounds(int slot)
+{
+    const std::function<bool()> is_wanted = [this] { return !is_stopped; };
+    const Patience patience(is_wanted);   // the other thread asks the caller
+    for (long seen = 0;;) {
+        {
+            std::unique_lock lock(mutex);
+            begins.wait(lock, [&] { return is_over || round != seen; });
+            if (is_over) return;
+            seen = round;
+            if (slot >= n_shares) continue;
+        }
+        do_share(slot);
+        const std::lock_guard lock(mutex);
+        if (--n_left == 0) ends.notify_one();
+    }
+}
+
+void CrewMembers::wait_for_others()
+{
+    std::unique_lock lock(mutex);
+    while (!ends.wait_for(lock, between_questions, [this] { return n_left == 0; })) {
+        if (thrown[0]) continue;
+        lock.unlock();
+        try {
+            Patience::ask_now();
+        } catch (...) {
+            thrown[0] = std::current_exception();
+            is_stopped = true;
+        }
+        lock.lock();
+    }
+}
+
+void CrewMembers::run(int n, int least, const Share& share)
+{
+    if (!is_started) start();
+    const int shares = std::min(static_cast<int>(threads.size()) + 1, n / std::max(least, 1));
+    if (shares < 2) return share(0, 0, n);
+    {
+        const std::lock_guard lock(mutex);
+        work = &share;
+        n_items = n;
+        n_shares = shares;
+        n_left = shares - 1;
+        is_stopped = false;
+        std::ranges::fill(thrown, nullptr);
+        ++round;
+    }
+    begins.notify_all();
+    CrewMembers* const own = std::exchange(current, nullptr);
+    do_share(0);
+    current = own;
+    if (thrown[0]) is_stopped = true;   // what comes first is thrown on, so that nobody else counts
+    wait_for_others();
+    for (const std::exception_ptr& one : thrown)
+        if (one) std::rethrow_exception(one);
+}
+
+void divide(int n, int least, const std::function<void(int, int, int)>& work)
+{
+    current->run(n, least, work);
+}
+
+}   // namespace livens::inline solvers_internal
