@@ -7,11 +7,52 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/solvers/crew.h"
+
 namespace livens::mixed {
+
+namespace {
+
+constexpr int least_shared_columns = 1000;   // of a matrix, that a thread takes
+
+}   // namespace
+
+bool BlockFactors::factorise(const SparseMatrix& A, bool is_new, std::span<const int> cuts)
+{
+    is_general_ = false;
+    if (is_new) is_analysed_ = false;
+    if (backend_ != SparseBackend::eigen) return factorise_generally(A);
+    if (is_new) along_time_.analyse(A, cuts);
+    return along_time_.factorise(A) || factorise_generally(A);
+}
+
+bool BlockFactors::factorise_generally(const SparseMatrix& A)
+{
+    is_general_ = true;
+    if (!is_analysed_) general_.analyse(A);
+    is_analysed_ = true;
+    return general_.factorise(A);
+}
+
+void BlockFactors::apply_inverse(std::span<const double> b, std::span<double> x) const
+{
+    is_general_ ? general_.solve(b, x) : along_time_.solve(b, x);
+}
+
+void BlockFactors::solve(const SparseMatrix& A, std::span<const double> b, std::span<double> x)
+{
+    missed_.resize(b.size());
+    correction_.resize(b.size());
+    apply_inverse(b, x);
+    A.multiply(x, missed_);
+    for (std::size_t i = 0; i < b.size(); ++i) missed_[i] = b[i] - missed_[i];
+    apply_inverse(missed_, correction_);
+    for (std::size_t i = 0; i < b.size(); ++i) x[i] += correction_[i];
+}
 
 Block::Block(Equations equations, SparseBackend backend, Border* border)
     : equations_(std::move(equations)), border_(border), tangent_(equations_), scaling_(equations_.space()),
-      lu_(backend)
+      factors_(backend)
 {
     fields_[0] = fields_[1] = equations_.space().zero();
 }
@@ -24,21 +65,42 @@ bool Block::residual()
            std::all_of(residual_.begin(), residual_.end(), [](double r) { return std::isfinite(r); });
 }
 
-bool Block::factorise()
+/// First rows of stretches, of functions that are about equally many: one for few of them, as it is one more
+/// for each two nodes that are left to the end; and the end.
+std::vector<int> Block::cuts() const
+{
+    const Numbering& numbering = equations_.space().numbering;
+    const int n = numbering.n_functions();
+    const int n_stretches = n < 32 ? 1 : n < 4096 ? 2 : 4;
+    std::vector<int> rows{0};
+    for (int s = 1; s < n_stretches; ++s)
+        rows.push_back(numbering.row_dP(static_cast<int>(static_cast<long long>(n) * s / n_stretches)));
+    rows.push_back(numbering.size());
+    return rows;
+}
+
+/// The scaled matrix. Returns whether its pattern is another one.
+bool Block::form()
 {
     bool is_new = tangent_.evaluate(fields(), inner());
     SparseMatrix& A = inner();
     scaled_.rows.assign(scaling_.rows().begin(), scaling_.rows().end());
     scaled_.columns.assign(scaling_.columns().begin(), scaling_.columns().end());
-    for (int c = 0; c < A.size; ++c)
+    for_each_item(A.size, least_shared_columns, [&](int c) {
         for (int k = A.column_starts[c]; k < A.column_starts[c + 1]; ++k)
             A.values[k] *= scaled_.rows[A.rows[k]] * scaled_.columns[c];
+    });
     if (border_ != nullptr) {
         border_->add_to(scaled_, equations_, fields());
         is_new = true;
     }
-    if (is_new) lu_.analyse(scaled_.all);
-    return lu_.factorise(scaled_.all);
+    return is_new;
+}
+
+bool Block::factorise()
+{
+    const bool is_new = form();
+    return factors_.factorise(scaled_.all, is_new, cuts());
 }
 
 /// With a border, increments end with those of momenta in world axes.
@@ -50,7 +112,7 @@ void Block::solve(std::span<double> dx)
     work_.resize(rows.size());
     increment_.resize(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) work_[i] = -rows[i] * scaled_.rows[i];
-    solve_refined(lu_, scaled_.all, work_, increment_);
+    factors_.solve(scaled_.all, work_, increment_);
     for (std::size_t i = 0; i < increment_.size(); ++i) increment_[i] *= scaled_.columns[i];
     const std::size_t n = residual_.size();
     std::copy_n(increment_.begin(), n, dx.begin());
@@ -95,12 +157,13 @@ NewtonProblem::Rows Block::rows() const
 void Block::measure_condition(SolveReport& report, const std::function<bool()>& goes_on)
 {
     begin();
-    if (!factorise()) return;
+    form();
+    if (!factors_.factorise_generally(scaled_.all)) return;   // which has transposed solutions, too
     const ConditionNumbers condition =
-        condition_numbers(scaled_.all, lu_, scaled_.rows, scaled_.columns, goes_on);
+        condition_numbers(scaled_.all, factors_.general(), scaled_.rows, scaled_.columns, goes_on);
     report.condition_1 = condition.one;
     report.condition_2 = condition.two;
-    report.scaled_condition = condition_numbers(scaled_.all, lu_, {}, {}, goes_on).one;
+    report.scaled_condition = condition_numbers(scaled_.all, factors_.general(), {}, {}, goes_on).one;
 }
 
 }   // namespace livens::mixed

@@ -2,17 +2,47 @@
 // A block of the family mixed as Newton's iteration sees it.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "livens/solvers/newton.h"
+#include "livens/solvers/staircase.h"
 #include "livens/spacetime/mixed/border.h"
 #include "livens/spacetime/mixed/scaling.h"
 #include "livens/spacetime/mixed/tangent.h"
 
 namespace livens::mixed {
 
-/// The whole matrix of a block by a sparse solver, rows and columns scaled (docs/theory.md, "Scaling"), each
+/// Factors of a block's matrix: along time, in stretches that share threads; by a general sparse solver where
+/// these meet no pivot, or another backend than Eigen is asked for.
+class BlockFactors {
+public:
+    explicit BlockFactors(SparseBackend backend) : backend_(backend), general_(backend) {}
+
+    /// `is_new`: the pattern; `cuts`: see StaircaseLU. False: singular or not finite.
+    bool factorise(const SparseMatrix& A, bool is_new, std::span<const int> cuts);
+    /// By the general solver.
+    bool factorise_generally(const SparseMatrix& A);
+    const SparseLU& general() const { return general_; }
+    /// x = A^-1 b, refined once.
+    void solve(const SparseMatrix& A, std::span<const double> b, std::span<double> x);
+    long long entries() const
+    {
+        return is_general_ ? general_.factor_entries() : along_time_.factor_entries();
+    }
+
+private:
+    void apply_inverse(std::span<const double> b, std::span<double> x) const;
+
+    SparseBackend backend_;
+    StaircaseLU along_time_;
+    SparseLU general_;
+    bool is_general_ = false, is_analysed_ = false;
+    std::vector<double> missed_, correction_;
+};
+
+/// The whole matrix of a block, rows and columns scaled (docs/theory.md, "Scaling"), each
 /// solution refined once. Increments are not scaled.
 class Block final : public NewtonProblem {
 public:
@@ -29,7 +59,7 @@ public:
     void begin() { scaling_.set(fields()); }
     const std::string& bad_load() const { return bad_load_; }
     Worst worst() const { return scaling_.worst(residual_); }
-    long long factor_entries() const { return lu_.factor_entries(); }
+    long long factor_entries() const { return factors_.entries(); }
     /// Of the matrix as published, and of the scaled one that is factorised, at the current point.
     void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
 
@@ -48,12 +78,14 @@ public:
 private:
     /// The matrix of the equations alone.
     SparseMatrix& inner() { return border_ != nullptr ? scaled_.inner : scaled_.all; }
+    bool form();
+    std::vector<int> cuts() const;
 
     Equations equations_;
     Border* border_;
     Tangent tangent_;
     Scaling scaling_;
-    SparseLU lu_;
+    BlockFactors factors_;
     Fields fields_[2];
     int current_ = 0, kept_ = 0;
     ScaledMatrix scaled_;

@@ -11,11 +11,16 @@
 
 #include "livens/base/error.h"
 #include "livens/multibody/mass_properties.h"
+#include "livens/solvers/dense.h"
+#include "livens/solvers/dense_matrix.h"
 #include "livens/solvers/sparse.h"
 
 namespace livens::mixed {
 
 namespace {
+
+/// Beyond, multipliers are found by a sparse matrix.
+constexpr int most_dense_rows = 48;
 
 void refuse_singular(const Body& body)
 {
@@ -126,27 +131,30 @@ void Coordinates::forces(double t, const double* X, const double* V, const doubl
 std::vector<double> Coordinates::multipliers(const State& state) const
 {
     const int n = size + n_rows();
-    std::vector<std::vector<std::pair<int, double>>> columns(static_cast<std::size_t>(n));
     std::vector<double> X, V, F(static_cast<std::size_t>(n_X())), x(static_cast<std::size_t>(n));
     for (int b = 0; b < n_bodies(); ++b) {
         X.insert(X.end(), state.X[b].a, state.X[b].a + 12);
         V.insert(V.end(), state.V[b].a, state.V[b].a + 12);
+    }
+    std::vector<double> values;
+    gradients(X.data(), values);
+    const std::vector<double> none(static_cast<std::size_t>(n_rows()), 0.0);
+    forces(state.t, X.data(), V.data(), none.data(), F.data());
+    gather(F.data(), x.data());
+    for (int k = 0; k < n_rows(); ++k) x[size + k] = -tables.rows.curvature(rows[k], {}, X.data(), V.data());
+    if (n_rows() <= most_dense_rows)
+        return multipliers_of_few({x.begin(), x.begin() + size}, {x.begin() + size, x.end()}, values);
+    std::vector<std::vector<std::pair<int, double>>> columns(static_cast<std::size_t>(n));
+    for (int b = 0; b < n_bodies(); ++b)
         for (int c = 0; c < n_numbers(b); ++c)
             for (int i = c % 3; i < n_numbers(b); i += 3)
                 columns[first[b] + c].emplace_back(first[b] + i,
                                                    tables.model->bodies()[b].mass(i / 3, c / 3));
-    }
-    std::vector<double> values;
-    gradients(X.data(), values);
     for (std::size_t i = 0; i < values.size(); ++i) {
         const GradientEntry& entry = gradient_entries[i];
         columns[entry.coordinate].emplace_back(size + entry.row, values[i]);
         columns[size + entry.row].emplace_back(entry.coordinate, values[i]);
     }
-    const std::vector<double> none(static_cast<std::size_t>(n_rows()), 0.0);
-    forces(state.t, X.data(), V.data(), none.data(), F.data());
-    gather(F.data(), x.data());
-    for (int k = 0; k < n_rows(); ++k) x[size + k] = -tables.rows.curvature(rows[k], {}, X.data(), V.data());
     for (auto& column : columns) std::sort(column.begin(), column.end());   // joints name bodies in any order
     const SparseMatrix A = sparse_from_columns(columns);
     SparseLU lu(SparseBackend::eigen);
@@ -156,6 +164,39 @@ std::vector<double> Coordinates::multipliers(const State& state) const
     else
         std::fill(x.begin(), x.end(), std::numeric_limits<double>::quiet_NaN());
     return {x.begin() + size, x.end()};
+}
+
+/// G m^-1 G^T lambda = G m^-1 F - (G X''), dense.
+std::vector<double> Coordinates::multipliers_of_few(const std::vector<double>& F,
+                                                    std::vector<double> right_side,
+                                                    const std::vector<double>& values) const
+{
+    const int n = n_rows();
+    const auto wide = static_cast<std::size_t>(size);
+    std::vector<double> G(static_cast<std::size_t>(n) * wide, 0.0), T(wide);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        G[static_cast<std::size_t>(gradient_entries[i].row) * wide +
+          static_cast<std::size_t>(gradient_entries[i].coordinate)] = values[i];
+    Cholesky schur;
+    schur.resize(n);
+    for (int k = 0; k < n; ++k) {
+        const double* g = G.data() + static_cast<std::size_t>(k) * wide;
+        for (int b = 0; b < n_bodies(); ++b)
+            for (int i = 0; i < n_numbers(b); ++i) {
+                double sum = 0;
+                for (int c = i % 3; c < n_numbers(b); c += 3)
+                    sum += inverse_masses[b](i / 3, c / 3) * g[first[b] + c];
+                T[static_cast<std::size_t>(first[b] + i)] = sum;
+            }
+        for (int j = 0; j <= k; ++j)
+            schur.row(k)[j] = dot({G.data() + static_cast<std::size_t>(j) * wide, wide}, T);
+        right_side[static_cast<std::size_t>(k)] = dot(T, F) - right_side[static_cast<std::size_t>(k)];
+    }
+    if (schur.factorise())
+        schur.solve(right_side.data());
+    else
+        std::ranges::fill(right_side, std::numeric_limits<double>::quiet_NaN());
+    return right_side;
 }
 
 }   // namespace livens::mixed

@@ -63,6 +63,10 @@ struct Coordinates {
     /// Multipliers of the acceleration-level equation X'' m + G^T lambda = F, G X'' = -tr(X' K X'^T), at a
     /// state; nan where it is singular.
     std::vector<double> multipliers(const State& state) const;
+
+private:
+    std::vector<double> multipliers_of_few(const std::vector<double>& F, std::vector<double> right_side,
+                                           const std::vector<double>& values) const;
 };
 
 }   // namespace livens::mixed

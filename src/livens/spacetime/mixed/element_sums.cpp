@@ -77,6 +77,16 @@ void LoadSums::add_products(Block& block, std::size_t l, const Matrix<12, 12>& b
     }
 }
 
+void LoadSums::see(const LoadSums& other)
+{
+    for (std::size_t l = 0; l < blocks_.size(); ++l) blocks_[l].seen |= other.blocks_[l].seen;
+}
+
+void LoadSums::expect(const LoadSums& other)
+{
+    for (std::size_t l = 0; l < blocks_.size(); ++l) blocks_[l].entries = other.blocks_[l].entries;
+}
+
 bool LoadSums::has_grown()
 {
     bool has_grown = false;

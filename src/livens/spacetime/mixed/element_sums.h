@@ -27,8 +27,11 @@ public:
     void clear();
     /// What a Gauss point adds.
     void add(const FieldSample& sample, int e, int g);
-    /// Whether entries have come that were not there when this was asked last.
+    /// Entries that are seen by now, also by others; whether some were not there when this was asked last.
+    void see(const LoadSums& other);
     bool has_grown();
+    /// Expects entries that another one has.
+    void expect(const LoadSums& other);
     const std::vector<Block>& blocks() const { return blocks_; }
     const double* of(std::size_t pair, std::size_t block) const
     {

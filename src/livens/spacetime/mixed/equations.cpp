@@ -8,7 +8,16 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/solvers/crew.h"
+#include "livens/solvers/patience.h"
+
 namespace livens::mixed {
+
+namespace {
+
+constexpr int least_shared_functions = 16;   // that a thread takes, where there are several
+
+}   // namespace
 
 Equations::Equations(FieldSpace space, EndMomentum at_start, EndMomentum at_end)
     : space_(std::move(space)), at_start_(std::move(at_start)), at_end_(std::move(at_end))
@@ -19,24 +28,22 @@ std::string Equations::residual(const Fields& fields, std::vector<double>& r)
     const BlockFunctions& functions = space_.functions;
     const Coordinates& m = space_.coordinates;
     const Numbering& numbering = space_.numbering;
-    std::string bad;
     dP_.assign(static_cast<std::size_t>(m.size) * functions.space().size(), 0.0);
     dX_.assign(dP_.size(), 0.0);
     dlambda_.assign(static_cast<std::size_t>(m.n_rows()) * functions.multipliers().size(), 0.0);
-    F_.resize(m.n_X());
-    for (int e = 0; e < functions.n_elements(); ++e)
-        for (int g = 0; g < functions.n_gauss(); ++g) {
-            sample_.take(space_, fields, e, g);
-            const double t = functions.time(e, g);
-            m.forces(t, sample_.X.data(), sample_.V.data(), sample_.lambda.data(), F_.data());
-            double sum = 0;   // is finite where all are
-            for (const double f : F_) sum += std::abs(f);
-            if (!std::isfinite(sum)) {
-                const int load = m.tables.loads.bad({t, Side::middle}, sample_.X.data(), sample_.V.data());
-                if (load >= 0) bad = not_finite(m.tables.model->loads()[load]);
-            }
-            add_point(e, g);
-        }
+    workspaces_.resize(static_cast<std::size_t>(Crew::size()));
+    for (Workspace& at : workspaces_) at.bad.clear();
+    // A thread makes all elements of its functions: those that it shares with others twice, so that sums at
+    // a function are made in one order, whoever makes them.
+    in_shares(functions.space().size(), least_shared_functions, [&](int slot, int begin, int end) {
+        Workspace& at = workspaces_[slot];
+        at.begin = begin;
+        at.end = end;
+        add_elements(fields, at);
+    });
+    std::string bad;
+    for (Workspace& at : workspaces_)
+        if (!at.bad.empty()) bad = std::move(at.bad);
     r.assign(static_cast<std::size_t>(space_.size()), 0.0);
     const auto take = [&r](int to, const std::vector<double>& raw, int A, int count) {
         if (to >= 0) std::copy_n(raw.data() + static_cast<std::size_t>(A) * count, count, r.data() + to);
@@ -51,33 +58,60 @@ std::string Equations::residual(const Fields& fields, std::vector<double>& r)
     return bad;
 }
 
-/// What one Gauss point adds to all rows.
-void Equations::add_point(int e, int g)
+void Equations::add_elements(const Fields& fields, Workspace& at)
 {
+    const BlockFunctions& functions = space_.functions;
+    const Coordinates& m = space_.coordinates;
+    at.F.resize(static_cast<std::size_t>(m.n_X()));
+    const auto [first, last] = functions.elements_of(at.begin, at.end);
+    for (int e = first; e < last; ++e) {
+        Patience::ask();
+        for (int g = 0; g < functions.n_gauss(); ++g) {
+            at.sample.take(space_, fields, e, g);
+            const double t = functions.time(e, g);
+            m.forces(t, at.sample.X.data(), at.sample.V.data(), at.sample.lambda.data(), at.F.data());
+            double sum = 0;   // is finite where all are
+            for (const double f : at.F) sum += std::abs(f);
+            if (!std::isfinite(sum)) {
+                const int load =
+                    m.tables.loads.bad({t, Side::middle}, at.sample.X.data(), at.sample.V.data());
+                if (load >= 0) at.bad = not_finite(m.tables.model->loads()[load]);
+            }
+            add_point(e, g, at);
+        }
+    }
+}
+
+/// What one Gauss point adds to all rows of the thread's functions.
+void Equations::add_point(int e, int g, const Workspace& at)
+{
+    const FieldSample& sample = at.sample;
     const BlockFunctions& functions = space_.functions;
     const Coordinates& m = space_.coordinates;
     const double w = functions.weight(e, g);
     const double *M = functions.M(e, g), *D = functions.D(e, g), *L = functions.L(e, g);
     for (int b = 0; b < m.n_bodies(); ++b) {
         Matrix34 P{};
-        std::copy_n(sample_.p.data() + m.first[b], m.n_numbers(b), P.a);
+        std::copy_n(sample.p.data() + m.first[b], m.n_numbers(b), P.a);
         Matrix34 slip = -P * m.inverse_masses[b];
-        for (int c = 0; c < 12; ++c) slip.a[c] += sample_.V[12 * b + c];
+        for (int c = 0; c < 12; ++c) slip.a[c] += sample.V[12 * b + c];
         for (int a = 0; a < functions.n_local(); ++a) {
+            if (functions.first(e) + a < at.begin || functions.first(e) + a >= at.end) continue;
             const double value = w * M[a], rate = w * D[a];
-            const std::size_t at = static_cast<std::size_t>(functions.first(e) + a) * m.size + m.first[b];
+            const std::size_t place = static_cast<std::size_t>(functions.first(e) + a) * m.size + m.first[b];
             for (int c = 0; c < m.n_numbers(b); ++c) {
-                dP_[at + c] += value * slip.a[c];
+                dP_[place + c] += value * slip.a[c];
                 const double inertia =
-                    space_.is_natural ? -rate * P.a[c] : value * sample_.p_rate[m.first[b] + c];
-                dX_[at + c] += inertia - value * F_[12 * b + c];
+                    space_.is_natural ? -rate * P.a[c] : value * sample.p_rate[m.first[b] + c];
+                dX_[place + c] += inertia - value * at.F[12 * b + c];
             }
         }
     }
     for (int k = 0; k < m.n_rows(); ++k) {
-        const double phi = w * m.tables.rows.value(m.rows[k], {}, sample_.X.data());
+        const double phi = w * m.tables.rows.value(m.rows[k], {}, sample.X.data());
         for (int a = 0; a < functions.n_local_multipliers(); ++a) {
             const int A = functions.multipliers().first(e) + a;
+            if (A < at.begin || A >= at.end) continue;
             dlambda_[static_cast<std::size_t>(A) * m.n_rows() + k] += L[a] * phi;
         }
     }

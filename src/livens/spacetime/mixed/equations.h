@@ -34,14 +34,21 @@ public:
     std::vector<Matrix34> end_momentum(const Fields& fields, bool at_end) const;
 
 private:
-    void add_point(int e, int g);
+    /// Of a thread, with its functions.
+    struct Workspace {
+        int begin = 0, end = 0;
+        FieldSample sample;
+        std::vector<double> F;   // forces less reactions at the Gauss point, 12 numbers a body
+        std::string bad;
+    };
+    void add_elements(const Fields& fields, Workspace& at);
+    void add_point(int e, int g, const Workspace& at);
     void add_boundary(const Fields& fields, std::vector<double>& r) const;
     std::vector<Matrix34> given_momentum(const Fields& fields, bool at_end) const;
 
     FieldSpace space_;
     EndMomentum at_start_, at_end_;
-    FieldSample sample_;
-    std::vector<double> F_;                   ///< forces less reactions at the Gauss point, 12 numbers a body
+    std::vector<Workspace> workspaces_;
     std::vector<double> dP_, dX_, dlambda_;   ///< rows of all functions, the solved and the others
 };
 

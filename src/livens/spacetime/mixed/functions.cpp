@@ -50,4 +50,22 @@ BlockFunctions::BlockFunctions(TimeSpace space, TimeSpace multipliers, int gauss
     }
 }
 
+/// Of multipliers of a lower degree one more on both sides.
+std::pair<int, int> BlockFunctions::elements_of(int begin, int end) const
+{
+    int low = 0, high = n_elements();
+    const int p = n_local() - 1;
+    // functions ascend with elements
+    while (high > low) {
+        const int middle = (low + high) / 2;
+        if (first(middle) + p < begin)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    int last = low;
+    while (last < n_elements() && first(last) < end) ++last;
+    return {std::max(low - p, 0), std::min(last + p, n_elements())};
+}
+
 }   // namespace livens::mixed

@@ -2,6 +2,7 @@
 // The functions of time of one block, and their values at the points where elements are integrated.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "livens/time/time_space.h"
@@ -24,6 +25,9 @@ public:
     int n_local() const { return space_.degree() + 1; }
     int n_local_multipliers() const { return multipliers_.degree() + 1; }
     int first(int e) const { return space_.first(e); }
+    /// Elements first..last - 1 that have all of the functions begin..end - 1, and multipliers of these
+    /// numbers.
+    std::pair<int, int> elements_of(int begin, int end) const;
     /// Of the functions that multipliers are made of; test functions are those of multipliers().
     int first_multiplier(int e) const { return multipliers_.first(e) + n_tears_[e]; }
 

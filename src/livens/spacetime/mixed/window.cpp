@@ -10,6 +10,7 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/solvers/crew.h"
 #include "livens/spacetime/mixed/bases.h"
 #include "livens/spacetime/mixed/block.h"
 #include "livens/spacetime/mixed/border.h"
@@ -19,6 +20,8 @@ namespace livens::inline spacetime_internal {
 using namespace mixed;
 
 namespace {
+
+constexpr int least_shared_states = 16;   // that a thread takes
 
 /// Gauss points that integrate every product of fields in (P23) exactly, if they are polynomials: degree 3 p.
 /// Quotients are integrated with p more.
@@ -152,6 +155,7 @@ void MixedWindow::take_guess(const Guess& guess)
     const int n = coordinates_.size, n_rows = coordinates_.n_rows();
     const bool is_equal = method_.multipliers == Mixed::Multipliers::equal;
     const std::vector<double> points = space.interpolation_points();
+    std::vector<State> states(is_equal ? points.size() : 0);
     for (std::size_t A = 0; A < points.size(); ++A) {
         State state = guess(points[A]);
         state.t = points[A];
@@ -163,8 +167,10 @@ void MixedWindow::take_guess(const Guess& guess)
             fields.x[A * n + i] = x[i] - fields.X0[i];
             fields.P[A * n + i] = p[i];
         }
-        if (is_equal) put_multipliers(static_cast<int>(A), state);
+        if (is_equal) states[A] = std::move(state);
     }
+    for_each_item(static_cast<int>(states.size()), least_shared_states,
+                  [&](int A) { put_multipliers(A, states[A]); });
     interpolate(space, n, fields.x);
     interpolate(space, n, fields.P);
     if (is_equal) {

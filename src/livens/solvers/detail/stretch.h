@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Some rows of a sparse matrix, and the columns eliminated in them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace livens::inline solvers_internal {
+
+/// Rows of a sparse matrix, columns ascending.
+struct StoredRows {
+    std::vector<int> starts;   ///< one more than there are rows
+    std::vector<int> columns;
+    std::vector<double> values;
+
+    int size() const { return static_cast<int>(starts.size()) - 1; }
+};
+
+/// Rows on their way: dense, over a window of columns that goes with the pivots, and behind it columns that
+/// are kept; with a bit for every number that may differ from zero.
+class Front {
+public:
+    void resize(int window, int n_kept);
+    int window() const { return window_; }
+    int slot(int column) const { return column & (window_ - 1); }
+    int take();   ///< a row of zeros
+    void give_back(int row) { free_.push_back(row); }
+    double* row(int i)
+    {
+        return values_.data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(width_);
+    }
+    std::uint64_t* bits(int i)
+    {
+        return bits_.data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(n_words_);
+    }
+    int n_words() const { return n_words_; }
+
+private:
+    int window_ = 0, width_ = 0, n_words_ = 0, n_rows_ = 0;
+    std::vector<double> values_;
+    std::vector<std::uint64_t> bits_;
+    std::vector<int> free_;
+};
+
+/// Numbers of consecutive columns in a row: the place of the first among own columns, then kept ones; where
+/// it stands in the front.
+struct NumberRun {
+    int first, slot, size;
+};
+
+/// What a row was taken of a pivot row.
+struct Multiplier {
+    int row;
+    double factor;
+};
+
+/// Rows as they enter: the places of their first own column, and of all their entries among own columns, then
+/// kept ones.
+struct StretchPattern {
+    int window = 1;   ///< own columns between the first and the last that any row in the front sees, at most
+    std::vector<int> own, kept;
+    std::vector<int> rows, begins, places, place_starts;
+};
+
+/// Of every pivot: its row, the pivot, the runs of the rest of its row, and what others were taken of it.
+struct StretchFactors {
+    std::vector<int> rows;
+    std::vector<double> diagonal, upper;
+    std::vector<NumberRun> runs;
+    std::vector<Multiplier> lower;
+    std::vector<std::size_t> run_starts, upper_starts, lower_starts;
+
+    void clear();
+    void end_pivot();
+};
+
+class Stretch {
+public:
+    /// Rows first..last - 1; `own`: columns to be eliminated, in this order; `kept`: all others that these
+    /// rows see.
+    void analyse(const StoredRows& rows, int first, int last, std::vector<int> own, std::vector<int> kept);
+    /// False: see StaircaseLU.
+    bool eliminate(const StoredRows& rows);
+
+    /// Rows without pivots, and of these what is in the kept columns, row after row.
+    const std::vector<int>& left() const { return left_; }
+    const std::vector<int>& kept() const { return pattern_.kept; }
+    const std::vector<double>& left_values() const { return left_values_; }
+    long long n_entries() const
+    {
+        return static_cast<long long>(factors_.upper.size() + factors_.lower.size() + factors_.rows.size());
+    }
+
+    /// y, by rows of the matrix: what eliminations do to it.
+    void forward(double* y) const;
+    /// x, by columns of the matrix, from y and the kept ones, which it has.
+    void backward(const double* y, double* x) const;
+
+private:
+    /// A row of the matrix, and its place in the front.
+    struct InFront {
+        int row, place;
+    };
+    int n_own() const { return static_cast<int>(pattern_.own.size()); }
+    void enter(const StoredRows& rows, int k, std::size_t& next);
+    int choose(int k);
+    void find_runs(int k, const std::uint64_t* bits);
+    void take_off(int k, int pivot);
+    void leave();
+
+    StretchPattern pattern_;
+    StretchFactors factors_;
+    std::vector<double> largest_;   // of own columns
+    Front front_;
+    std::vector<InFront> active_;
+    std::vector<int> candidates_;   // of active_, for the pivot at hand
+    std::vector<int> left_;
+    std::vector<double> left_values_;
+    mutable std::vector<double> x_;
+};
+
+}   // namespace livens::inline solvers_internal
