@@ -248,20 +248,21 @@ void NullSpaces::close_with(std::span<const double> closing, const DenseMatrix& 
 /// short, off a solution.
 void NullSpaces::to_factorised(double* x) const
 {
-    const int n = tables_.n_twists, k = tables_.rank, first = layout_->is_active(0) ? 0 : 1;
-    const RowFunctions& rows = row_functions();
+    const int first = layout_->is_active(0) ? 0 : 1;
     in_shares(structure_.n_nodes(), least_shared, [&](int, int begin, int end) {
+        const RowFunctions& rows = row_functions();
+        const int n = tables_.n_twists, k = tables_.rank, f = f_;
         std::vector<double> row(static_cast<std::size_t>(n));
         for (int A = begin; A < end; ++A) {
             if (!layout_->is_active(A)) continue;
-            double* const of_node = x + static_cast<std::ptrdiff_t>(A - first) * f_;
+            double* const of_node = x + static_cast<std::ptrdiff_t>(A - first) * f;
             std::fill_n(row.begin(), k, 0.0);
-            std::copy_n(of_node, f_, row.begin() + k);
+            std::copy_n(of_node, f, row.begin() + k);
             nodes_->basis(A).q.apply(row.data());
             carry_rows({*bodies_, nodes_->maps(A)}, {tables_.bodies, maps_at(A)}, row.data());
-            std::fill_n(of_node, f_, 0.0);
-            const double* z = z_.data() + place(A);
-            for (int i = 0; i < n; ++i) subtract_scaled(rows, of_node, -row[i], z + i * f_, f_);
+            std::fill_n(of_node, f, 0.0);
+            const double *z = z_.data() + place(A), *value = row.data();
+            for (int i = 0; i < n; ++i) subtract_scaled(rows, of_node, -value[i], z + i * f, f);
         }
     });
 }

@@ -135,21 +135,26 @@ void NodePositions::adopt(const NodePositions& others, const WindowLayout& layou
 /// Node A of `to` <- node A_from of `from`, both parts, moved.
 void NodePositions::displace(const Set& from, int A_from, const double* twist, double factor, Set& to, int A)
 {
-    double displacement[12] = {}, scaled[6];
-    for (int b = 0; b < tables_.n_bodies(); ++b) {
-        const auto& body = tables_.bodies[b];
-        const std::size_t at = 12 * static_cast<std::size_t>(b);
-        const double* own = twist + body.first;
-        for (int i = 0; i < body.dofs && factor != 1; ++i) scaled[i] = factor * own[i];
-        if (factor != 1) own = scaled;
-        if (body.dofs == 6) {
-            twist::displacement(own, from.X.data() + place(A_from) + at, displacement);
-        } else {
-            std::fill(displacement + 3, displacement + 12, 0.0);
-            std::copy_n(own, 3, displacement);
+    constexpr int few = 8;   // bodies at a time
+    double displacement[12 * few], scaled[6];
+    for (int begin = 0; begin < tables_.n_bodies(); begin += few) {
+        const int n = std::min(few, tables_.n_bodies() - begin);
+        for (int i = 0; i < n; ++i) {
+            const auto& body = tables_.bodies[begin + i];
+            const double* own = twist + body.first;
+            double* by = displacement + 12 * i;
+            for (int j = 0; j < body.dofs && factor != 1; ++j) scaled[j] = factor * own[j];
+            if (factor != 1) own = scaled;
+            if (body.dofs == 6) {
+                twist::displacement(own, from.X.data() + place(A_from) + 12 * (begin + i), by);
+            } else {
+                std::copy_n(own, 3, by);
+                std::fill(by + 3, by + 12, 0.0);
+            }
         }
-        add_two_sums(from.X.data() + place(A_from) + at, from.low.data() + place(A_from) + at, displacement,
-                     to.X.data() + place(A) + at, to.low.data() + place(A) + at, 12);
+        const std::size_t first = place(A_from) + 12 * begin, to_first = place(A) + 12 * begin;
+        add_two_sums(from.X.data() + first, from.low.data() + first, displacement, to.X.data() + to_first,
+                     to.low.data() + to_first, 12 * static_cast<std::size_t>(n));
     }
 }
 
@@ -243,29 +248,82 @@ void Nodes::begin_constraining()
     for (int c = 0; c < tables_.rank; ++c) phi_[c] = tables_.rows.value((*first_rows_)[c], at(0), X(0));
 }
 
-/// Bases first, since changes are told by those of two nodes; violations last, which add up along the nodes.
+/// Of Phi in row c, from the element's first node, which keeps the digits of a small increment; Phi itself at
+/// the first node of all.
+auto Nodes::change_at(int e, int B, double* work) const
+{
+    const ConstraintBasis &first = basis(e * rule_.degree), &own = bases_[e * rule_.degree + B];
+    return [this, e, B, work, &first, &own, step = dX(e, B)](int c, int row, bool is_quadratic) {
+        const int A = e * rule_.degree + B;
+        return B == 0         ? tables_.rows.value(row, at(A), X(A), own.gradient(c))
+               : is_quadratic ? tables_.rows.change(row, first.gradient(c), own.gradient(c), step)
+                              : followed(e, B, c, work);
+    };
+}
+
+template <class Change>
+void Nodes::add_violations(int e, int B, const Change& change, double& sum)
+{
+    constexpr double rounding = 1e-16;   // of Phi at the start itself: nothing to correct
+    constexpr double close = 1e-4;       // relative, for one linear step onto the constraints
+    const int A = e * rule_.degree + B, k = tables_.rank, before = B > 0 ? -k : 0, first = -B * k;
+    const int* row = bases_[A].rows.data();
+    const double* row_scale = bases_[A].row_scale.data();
+    double *violations = phi_.data() + A * k, *scaled = scaled_.data() + A * k;
+    for (int c = 0; c < k; ++c) {
+        const auto& table = tables_.rows[row[c]];
+        const bool is_quadratic = table.is_quadratic;
+        double phi = change(c, row[c], is_quadratic);
+        const double scale = table.row->scale;
+        if (B > 0) phi = violations[c + (is_quadratic ? first : before)] + phi;
+        if (std::abs(phi) < rounding * scale) phi = 0;
+        if (!(std::abs(phi) <= close * scale)) near_ = false;
+        violations[c] = phi;
+        scaled[c] = phi * row_scale[c];
+        sum += std::abs(phi);
+    }
+}
+
+/// Where threads share it bases come first, since changes are told by those of two nodes, and violations
+/// last, which add up along the nodes.
 bool Nodes::constrain(const WindowLayout& layout, bool same_choices)
 {
     near_ = true;
     begin_constraining();
+    const int n = layout.n_elements(), degree = rule_.degree;
+    const bool is_shared = Crew::divides(n, least_shared);
     const auto for_nodes = [&](int e, const auto& act) {
-        for (int B = e == 0 ? 0 : 1; B <= rule_.degree; ++B)
-            if (layout.is_unknown(e * rule_.degree + B)) act(B);
+        const int last = layout.is_unknown((e + 1) * degree) ? degree : degree - 1;
+        for (int B = e == 0 && layout.is_unknown(0) ? 0 : 1; B <= last; ++B) act(B);
     };
-    in_shares(layout.n_elements(), least_shared, [&](int, int begin, int end) {
+    double sum = 0;
+    in_shares(n, least_shared, [&](int, int begin, int end) {
         for (int e = begin; e < end; ++e) {
             Patience::ask();
             take_differences(e);
-            for_nodes(e, [&](int B) { build_basis(e * rule_.degree + B, same_choices); });
+            for_nodes(e, [&](int B) {
+                build_basis(e * degree + B, same_choices);
+                if (!is_shared) add_violations(e, B, change_at(e, B, work_[0].data()), sum);
+            });
         }
     });
-    in_shares(layout.n_elements(), least_shared, [&](int slot, int begin, int end) {
+    if (!is_shared) return std::isfinite(sum);
+    in_shares(n, least_shared, [&](int slot, int begin, int end) {
         for (int e = begin; e < end; ++e)
-            for_nodes(e, [&](int B) { find_changes(e, B, work_[slot].data()); });
+            for_nodes(e, [&](int B) {
+                const auto change = change_at(e, B, work_[slot].data());
+                double* changes = phi_.data() + (e * degree + B) * tables_.rank;
+                const int* row = bases_[e * degree + B].rows.data();
+                for (int c = 0; c < tables_.rank; ++c)
+                    changes[c] = change(c, row[c], tables_.rows[row[c]].is_quadratic);
+            });
     });
-    double sum = 0;
-    for (int e = 0; e < layout.n_elements(); ++e)
-        for_nodes(e, [&](int B) { find_violations(e, B, sum); });
+    for (int e = 0; e < n; ++e)
+        for_nodes(e, [&](int B) {
+            const double* changes = phi_.data() + (e * degree + B) * tables_.rank;
+            add_violations(
+                e, B, [changes](int c, int, bool) { return changes[c]; }, sum);
+        });
     return std::isfinite(sum);
 }
 
@@ -273,38 +331,6 @@ void Nodes::build_basis(int A, bool same_choices)
 {
     tables_.bodies.map_twists(X(A), maps_.data() + place(A));
     pivots_[A] = bases_[A].build(tables_, at(A), X(A), maps(A), rows(), same_choices);
-}
-
-/// Of Phi, from the element's first node, which keeps the digits of a small increment; Phi itself at the
-/// first node of all.
-void Nodes::find_changes(int e, int B, double* work)
-{
-    const int start = e * rule_.degree, A = start + B;
-    const ConstraintBasis &first = basis(start), &own = bases_[A];
-    for (int c = 0; c < tables_.rank; ++c)
-        phi_[A * tables_.rank + c] =
-            B == 0 ? tables_.rows.value(own.rows[c], at(A), X(A), own.gradient(c))
-            : tables_.rows[own.rows[c]].is_quadratic
-                ? tables_.rows.change(own.rows[c], first.gradient(c), own.gradient(c), dX(e, B))
-                : followed(e, B, c, work);
-}
-
-void Nodes::find_violations(int e, int B, double& sum)
-{
-    constexpr double rounding = 1e-16;   // of Phi at the start itself: nothing to correct
-    constexpr double close = 1e-4;       // relative, for one linear step onto the constraints
-    const int start = e * rule_.degree, A = start + B, k = tables_.rank;
-    const ConstraintBasis& own = bases_[A];
-    for (int c = 0; c < k; ++c) {
-        const auto& table = tables_.rows[own.rows[c]];
-        double phi = phi_[A * k + c];
-        if (B > 0) phi = phi_[(table.is_quadratic ? start : A - 1) * k + c] + phi;
-        if (std::abs(phi) < rounding * table.row->scale) phi = 0;
-        if (!(std::abs(phi) <= close * table.row->scale)) near_ = false;
-        phi_[A * k + c] = phi;
-        scaled_[A * k + c] = phi * own.row_scale[c];
-        sum += std::abs(phi);
-    }
 }
 
 /// The change of Phi from the node before, so that angles are followed through several turns.
@@ -321,11 +347,12 @@ double Nodes::followed(int e, int B, int c, double* work) const
 double Nodes::correct(const WindowLayout& layout)
 {
     const int k = tables_.rank, n = tables_.n_twists;
+    std::ranges::fill(moves_, 0.0);
+    const int last = layout.n_nodes() - 1;
+    const int first = layout.is_unknown(0) ? 0 : 1, behind = layout.is_unknown(last) ? last + 1 : last;
     in_shares(layout.n_nodes(), least_shared, [&](int slot, int begin, int end) {
         double *y = work_[slot].data(), *twist = y + size_;
-        for (int A = begin; A < end; ++A) {
-            moves_[A] = 0;
-            if (!layout.is_unknown(A)) continue;
+        for (int A = std::max(begin, first); A < std::min(end, behind); ++A) {
             Patience::ask();
             const double* phi = violations(A);
             if (std::all_of(phi, phi + k, [](double value) { return value == 0; })) continue;
@@ -341,8 +368,7 @@ double Nodes::correct(const WindowLayout& layout)
     });
     double correction = 0;
     for (const double move : moves_) correction = std::max(correction, move);
-    if (correction > 0)
-        for_each_item(layout.n_elements(), least_shared, [&](int e) { take_differences(e); });
+    if (correction > 0) for_each_item(layout.n_elements(), least_shared, [&](int e) { take_differences(e); });
     return correction;
 }
 

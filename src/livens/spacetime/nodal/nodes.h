@@ -110,8 +110,9 @@ public:
 private:
     void begin_constraining();
     void build_basis(int A, bool same_choices);
-    void find_changes(int e, int B, double* work);
-    void find_violations(int e, int B, double& sum);
+    auto change_at(int e, int B, double* work) const;
+    template <class Change>
+    void add_violations(int e, int B, const Change& change, double& sum);
     double followed(int e, int B, int c, double* work) const;
 
     std::vector<double> maps_;
