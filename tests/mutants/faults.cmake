@@ -74,14 +74,14 @@ livens_mutant(NAME sign_of_a_moment
 # The turning of the rows left out of the tangent: the answer stays, convergence is linear.
 livens_mutant(NAME missing_geometric_term
               FILE spacetime/nodal/tangent.cpp
-              OLD [[twist::add_geometric(nodes.X(A) + 12 * b, total_.data() + 12 * b, blocks_.data() + 36 * b, 6);]]
+              OLD [[twist::add_geometric(nodes.X(A) + 12 * b, at.total.data() + 12 * b, at.blocks.data() + 36 * b, 6);]]
               NEW [[(void)b;]]
               TESTS_OF convergence
               MUST_FAIL Newton.NeedsThreeIterationsAnElementOnTheAverage
                         Newton.FactorisesOnceAnElementWhereErrorsAreSmall)
 livens_mutant(NAME missing_geometric_term_by_differences
               FILE spacetime/nodal/tangent.cpp
-              OLD [[twist::add_geometric(nodes.X(A) + 12 * b, total_.data() + 12 * b, blocks_.data() + 36 * b, 6);]]
+              OLD [[twist::add_geometric(nodes.X(A) + 12 * b, at.total.data() + 12 * b, at.blocks.data() + 36 * b, 6);]]
               NEW [[(void)b;]]
               TESTS_OF unit_spacetime
               MUST_FAIL Lobatto/TangentOf.MatchesDifferencesWithEveryKindOfTerm/*)
@@ -114,8 +114,8 @@ livens_mutant(NAME loads_at_lobatto_points
 # What a load does at a Gauss point given to one node, instead of shared out: impulses are right, moments not.
 livens_mutant(NAME loads_given_to_one_node
               FILE spacetime/nodal/element_loads.cpp
-              OLD [[forces[i] += rule_.M[c * n_nodes + A] * F_]]
-              NEW [[forces[i] += (A == c ? 1 : 0) * F_]]
+              OLD [[forces[i] += rule_.M[c * n_nodes + A] * at.F]]
+              NEW [[forces[i] += (A == c ? 1 : 0) * at.F]]
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.AgreesWithNewtonOnRandomMechanisms)
 
@@ -172,8 +172,8 @@ livens_mutant(NAME any_start_is_the_last
 # Angles followed from node to node by increments since the first node of the element.
 livens_mutant(NAME turns_of_an_element
               FILE spacetime/nodal/nodes.cpp
-              OLD [[difference[i] = B > 1 ? step[i] - dX(e, B - 1)[i] : step[i];]]
-              NEW [[difference[i] = step[i];]]
+              OLD [[work[i] = B > 1 ? step[i] - dX(e, B - 1)[i] : step[i];]]
+              NEW [[work[i] = step[i];]]
               TESTS_OF convergence
               MUST_FAIL Couplings.AnElementMayTurnByMoreThanAHalf)
 
@@ -280,8 +280,8 @@ livens_mutant(NAME stiffness_made_symmetric
 # Multipliers without their geometric stiffness: Newton would still converge, slowly.
 livens_mutant(NAME mixed_without_geometric_stiffness
               FILE spacetime/mixed/tangent.cpp
-              OLD [[entries_.add(row + entry.coordinate_i, X + entry.coordinate_j, K[entry.row] * entry.value);]]
-              NEW [[entries_.add(row + entry.coordinate_i, X + entry.coordinate_j, 0 * K[entry.row]);]]
+              OLD [[entries.add(row + entry.coordinate_i, X + entry.coordinate_j, K[entry.row] * entry.value);]]
+              NEW [[entries.add(row + entry.coordinate_i, X + entry.coordinate_j, 0 * K[entry.row]);]]
               TESTS_OF unit_spacetime
               MUST_FAIL AllPairings/MixedEquations.HaveTheMatrixOfTheirResidual/NaturalEqualX0P0
                         AllPairings/MixedEquations.HaveTheMatrixOfTheirResidual/StrongLowerXTPT)
@@ -1883,3 +1883,35 @@ livens_mutant(NAME masses_seen_by_projection
               NEW [[return state;]]
               TESTS_OF unit_io
               MUST_FAIL UnknownsOfFiles.ThatNothingShowsAreToldWhereTheyStand)
+
+# Pivots as they come, not the largest of their columns.
+livens_mutant(NAME stretches_without_pivoting
+              FILE solvers/stretch.cpp
+              OLD [[if (!(size <= largest)) largest = size, pivot = i;]]
+              NEW [[if (pivot < 0) largest = size, pivot = i;]]
+              TESTS_OF unit_solvers
+              MUST_FAIL Staircase.TakesTheLargestPivot)
+
+# What eliminations put into the rows of others is not looked at.
+livens_mutant(NAME fill_in_of_stretches_forgotten
+              FILE solvers/stretch.cpp
+              OLD [[for (int w = 0; w < front_.n_words(); ++w) own_bits[w] |= bits[w];]]
+              NEW [[;]]
+              TESTS_OF unit_solvers
+              MUST_FAIL Staircase.SolvesWhatTheGeneralSolverSolves)
+
+# An element at the border of two threads' functions is left to the one before.
+livens_mutant(NAME elements_of_one_thread_alone
+              FILE spacetime/mixed/functions.cpp
+              OLD [[return {std::max(low - p, 0), std::min(last + p, n_elements())};]]
+              NEW [[return {begin > 0 ? low + 1 : 0, std::min(last + p, n_elements())};]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Threads.LeaveNoTraceInTheBitsOfMotions)
+
+# Violations that add up along nodes are taken where threads find their changes.
+livens_mutant(NAME violations_before_those_of_the_nodes_before
+              FILE spacetime/nodal/nodes.cpp
+              OLD [[if (!is_shared) return std::isfinite(sum);]]
+              NEW [[if (is_shared || !is_shared) return std::isfinite(sum);]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Threads.LeaveNoTraceInTheBitsOfMotions)

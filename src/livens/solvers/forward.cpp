@@ -89,8 +89,8 @@ struct Piece {
     int known_begin = 0, passed_begin = 0, all_begin = 0;
     DenseLU lu;
     Outcome outcome = Outcome::singular;   // of its factors
-    Block known;    // own rows x unknowns of the known node
-    Block passed;   // rows of the passed node x all unknowns
+    Block known;                           // own rows x unknowns of the known node
+    Block passed;                          // rows of the passed node x all unknowns
 };
 
 class ForwardSolver final : public LinearSolver {

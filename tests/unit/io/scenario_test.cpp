@@ -532,7 +532,8 @@ const std::set<std::string_view> codes_of_the_core{"accuracy-out-of-range",
                                                    "time-out-of-range",
                                                    "time-outside",
                                                    "time-start",
-                                                   "threads-out-of-range", "tolerance-out-of-range",
+                                                   "threads-out-of-range",
+                                                   "tolerance-out-of-range",
                                                    "window",
                                                    "window-out-of-range"};
 

@@ -47,9 +47,7 @@ TEST(Crew, LeavesShortLoopsToTheOneWhoAsks)
         EXPECT_EQ(end - begin, 15);
     });
     int n_shares = 0;
-    in_shares(3, 1, [&](int, int, int) {
-        EXPECT_EQ(Crew::size(), 1) << "a crew inside of shares";
-    });
+    in_shares(3, 1, [&](int, int, int) { EXPECT_EQ(Crew::size(), 1) << "a crew inside of shares"; });
     in_shares(1, 1, [&](int, int, int) { ++n_shares; });
     EXPECT_EQ(n_shares, 1);
     EXPECT_EQ(Crew::size(), 3);

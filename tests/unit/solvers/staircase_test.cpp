@@ -64,6 +64,32 @@ TEST(Staircase, SolvesWhatTheGeneralSolverSolves)
             }
 }
 
+/// Its diagonal is so small that as pivots it costs ten digits.
+TEST(Staircase, TakesTheLargestPivot)
+{
+    for (const int stretches : {1, 3}) {
+        SparseMatrix A = chain(6, 20, 0);
+        double largest = 0;
+        for (int c = 0; c < A.size; ++c)
+            for (int k = A.column_starts[c]; k < A.column_starts[c + 1]; ++k) {
+                if (A.rows[k] == c) A.values[k] *= 1e-9;
+                largest = std::max(largest, std::abs(A.values[k]));
+            }
+        StaircaseLU lu;
+        lu.analyse(A, cuts_of(6, 20, stretches));
+        ASSERT_TRUE(lu.factorise(A));
+        std::vector<double> b(static_cast<std::size_t>(A.size), 1.0), x(b), back(b);
+        lu.solve(b, x);
+        A.multiply(x, back);
+        double size = 0, error = 0;
+        for (std::size_t i = 0; i < b.size(); ++i) {
+            size = std::max(size, std::abs(x[i]));
+            error = std::max(error, std::abs(back[i] - b[i]));
+        }
+        EXPECT_LT(error, 1e-12 * (1 + largest * size)) << stretches;
+    }
+}
+
 TEST(Staircase, HasTheSameBitsForAnyNumberOfThreads)
 {
     const SparseMatrix A = chain(5, 40, 2);

@@ -27,7 +27,7 @@ struct Link : LinkValues {
     int p_near = 0, p_far = 0;              // numbers that pass at its ends: rows there, or none
     double scale = 1;                       // of what passes at its far end
     Panel inside, merged;
-    int failed = -1;        // column inside that has no pivot
+    int failed = -1;   // column inside that has no pivot
 };
 
 /// Vectors on the way of a solution.

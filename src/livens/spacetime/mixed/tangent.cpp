@@ -68,8 +68,9 @@ bool Tangent::evaluate(const Fields& fields, SparseMatrix& J)
     if (is_new) make_pattern(J);
     for (;;) {
         J.values.assign(J.rows.size(), 0.0);
-        in_shares(space_.functions.space().size(), least_shared_functions,
-                  [&](int slot, int begin, int end) { add_share(fields, J, slot, {begin, end}); });
+        in_shares(space_.functions.space().size(), least_shared_functions, [&](int slot, int begin, int end) {
+            add_share(fields, J, slot, {begin, end});
+        });
         EntrySink all{&pattern_, J.values.data(), pattern_.slots(space_.functions.n_elements()), 0, J.size};
         add_boundary(&fields, all);
         // Loads show where their tangents differ from zero as they go: one more entry, one more pattern.
@@ -146,7 +147,7 @@ void Tangent::add_momenta(int e, const ElementSums& sums, EntrySink& entries) co
                     for (int k = i % 3; k < m.n_numbers(body); k += 3)
                         if (inverse(k / 3, i / 3) != 0)
                             entries.add(row + m.first[body] + i, P + m.first[body] + k,
-                                         -MM * inverse(k / 3, i / 3));
+                                        -MM * inverse(k / 3, i / 3));
             }
         }
 }

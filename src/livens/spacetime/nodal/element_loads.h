@@ -46,7 +46,7 @@ private:
 
     const ModelTables& tables_;
     const ElementRule& rule_;
-    std::ptrdiff_t n_;   // numbers of all bodies
+    std::ptrdiff_t n_;                    // numbers of all bodies
     std::vector<Workspace> workspaces_;   // none without loads
     AlignedDoubles M_, dM_;               // M_B(s_c) and its slope, a row of lanes over c for each B
     std::vector<double> forces_;          // F_A, element after element

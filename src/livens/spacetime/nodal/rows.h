@@ -82,7 +82,7 @@ private:
     ElementLoads loads_;
     std::ptrdiff_t size_of_node_;   // 12 a body
     std::vector<double> raw_, impulses_, reduced_;
-    std::vector<char> are_finite_;          // of nodes
+    std::vector<char> are_finite_;   // of nodes
     std::vector<RowWorkspace> workspaces_;
     double size_ = 0, terms_ = 0, start_terms_ = 0;
 };

@@ -111,7 +111,7 @@ private:
     double correction_ = 0;                 // largest pull of the last move
     Extent extent_;                         // the largest inside of elements
     long long evaluations_ = 0;
-    std::vector<double> range_;   // violations that are left, in the basis
+    std::vector<double> range_;     // violations that are left, in the basis
     std::vector<Extent> extents_;   // of each thread's elements
 };
 

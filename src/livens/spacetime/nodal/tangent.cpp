@@ -108,8 +108,7 @@ void Tangent::form_element(const Point& of, int e, Workspace& at)
             sink.open(e, A, B);
             const double factor = rule_.k[a * rule_.size() + b] / layout.h(e);
             for (int body = 0; body < tables_.n_bodies(); ++body) {
-                if (tables_.bodies[body].dofs == 6)
-                    tables_.bodies.spin_mass(body, nodes.X(A), nodes.X(B), H);
+                if (tables_.bodies[body].dofs == 6) tables_.bodies.spin_mass(body, nodes.X(A), nodes.X(B), H);
                 sink.mass(body, factor, H);
             }
             if (A == B && (a > 0 || e == 0)) add_node_terms(of, A, at);
@@ -137,8 +136,8 @@ void Tangent::add_node_terms(const Point& of, int A, Workspace& at) const
     }
 }
 
-/// - W_A sum lambda K: of bodies with themselves into the blocks, the others to the sink, what rows of a joint
-/// make of the same two bodies together.
+/// - W_A sum lambda K: of bodies with themselves into the blocks, the others to the sink, what rows of a
+/// joint make of the same two bodies together.
 void Tangent::add_constraints(const Point& of, int A, Workspace& at) const
 {
     const auto& [layout, nodes, rows] = of;

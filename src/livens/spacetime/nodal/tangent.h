@@ -52,9 +52,9 @@ private:
     /// Of a thread, with its sink.
     struct Workspace {
         TangentSink* sink = nullptr;
-        std::vector<LoadTangent> loads;     // of one element: those with tangents, Gauss point after point
-        std::vector<double> blocks;         // 36 a body
-        std::vector<double> total, X, V;    // 12 a body
+        std::vector<LoadTangent> loads;    // of one element: those with tangents, Gauss point after point
+        std::vector<double> blocks;        // 36 a body
+        std::vector<double> total, X, V;   // 12 a body
     };
     /// What a tangent is made of.
     struct Point {
