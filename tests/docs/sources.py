@@ -108,6 +108,7 @@ TIES = [
     ("1 to $«10^5»$ elements, 1 to 36", "tests/unit/solvers/chain_solver_test.cpp", r"\{1000, (100000)\}"),
     ("unless one of its ends is larger by «8», which", "src/livens/solvers/panel.cpp", r"preferred = (\d+);"),
     ("and beyond «64» that one is done", "src/livens/solvers/chain.cpp", r"most_growth = (\d+);"),
+    ("Pivots below $«10^{-10}»$ of their column", "src/livens/solvers/stretch.cpp", r"least_pivot = ([^;]+);"),
     ("is divided, at «0.4» of its length", f"{TIME}/march/partition.cpp", r"uneven = ([^;]+);"),
     ("(Tests hold a parallelogram to $«10^{-12}»$", "tests/convergence/singular.cpp", r"turn\), degree == 3 \? 1e-9 : ([^)]+)\)"),
     ("fall $«10^{-12}»$ to $«10^{-5}»$ s beside", "tests/convergence/singular.cpp", r"off : \{0\.0, ([^,]+),.*?(1e-5)\}"),

@@ -532,7 +532,6 @@ const std::set<std::string_view> codes_of_the_core{"accuracy-out-of-range",
                                                    "time-out-of-range",
                                                    "time-outside",
                                                    "time-start",
-                                                   "threads-out-of-range",
                                                    "tolerance-out-of-range",
                                                    "window",
                                                    "window-out-of-range"};
@@ -547,8 +546,8 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                    "directors-nearly-orthonormal", "io-directory", "io-not-found",
                    "io-unreadable"});   // here, of meshes, of hostile files
     others.insert({"conditions-dependent", "conditions-joints", "conditions-method", "conditions-not-smooth",
-                   "conditions-too-few", "conditions-too-many", "conditions-twice",
-                   "conditions-unknown"});   // known_test.cpp
+                   "conditions-too-few", "conditions-too-many", "conditions-twice", "conditions-unknown",
+                   "threads-out-of-range"});   // known_test.cpp, threads_test.cpp
     others.insert({"point-body", "point-unknown", "gravity-differs", "include-file", "include-ignored",
                    "include-limit", "include-path", "include-ring", "include-source"});   // their own tests
     others.insert({"import-lost", "import-mended", "import-merged", "mjcf-read", "urdf-joint", "urdf-tag",
