@@ -1887,16 +1887,16 @@ livens_mutant(NAME masses_seen_by_projection
 # Pivots as they come, not the largest of their columns.
 livens_mutant(NAME stretches_without_pivoting
               FILE solvers/stretch.cpp
-              OLD [[if (!(size <= largest)) largest = size, pivot = i;]]
-              NEW [[if (pivot < 0) largest = size, pivot = i;]]
+              OLD [[if (!(size <= largest)) largest = size, pivot = place;]]
+              NEW [[if (pivot < 0) largest = size, pivot = place;]]
               TESTS_OF unit_solvers
               MUST_FAIL Staircase.TakesTheLargestPivot)
 
 # What eliminations put into the rows of others is not looked at.
 livens_mutant(NAME fill_in_of_stretches_forgotten
               FILE solvers/stretch.cpp
-              OLD [[for (int w = 0; w < front_.n_words(); ++w) own_bits[w] |= bits[w];]]
-              NEW [[;]]
+              OLD [[        take_bits(bits, place);]]
+              NEW [[        ;]]
               TESTS_OF unit_solvers
               MUST_FAIL Staircase.SolvesWhatTheGeneralSolverSolves)
 
@@ -1915,3 +1915,11 @@ livens_mutant(NAME violations_before_those_of_the_nodes_before
               NEW [[if (is_shared || !is_shared) return std::isfinite(sum);]]
               TESTS_OF unit_spacetime
               MUST_FAIL Threads.LeaveNoTraceInTheBitsOfMotions)
+
+# Values behind elements that were left out are put where they would stand if time was shorter.
+livens_mutant(NAME matrices_drawn_out_without_values
+              FILE spacetime/mixed/matrix_pattern.cpp
+              OLD [[before[element.n_cuts] + (element.copy > 0]]
+              NEW [[(element.copy > 0]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL AllPairings/MixedEquations.HaveTheMatrixOfTheirResidualWithManyElements/NaturalEqualX0P0)

@@ -16,8 +16,8 @@ namespace livens::inline solvers_internal {
 
 namespace {
 
-constexpr int several = -1, nobody = -2;   // whose column it is
-constexpr int least_shared_rows = 1000;    // that a thread copies
+constexpr int several = -1;               // whose column it is
+constexpr int least_shared_rows = 1000;   // that a thread copies
 
 /// The pattern row by row, and where their entries stand in the matrix.
 void take_rows(const SparseMatrix& A, StoredRows& rows, std::vector<int>& places)
@@ -60,12 +60,14 @@ void StaircaseLU::analyse(const SparseMatrix& A, std::span<const int> cuts)
     first_behind_ = n > 0 ? cuts.back() : 0;
     std::vector<int> stretch_of(static_cast<std::size_t>(size_), several);   // of rows
     for (int s = 0; s < n; ++s) std::fill(stretch_of.begin() + cuts[s], stretch_of.begin() + cuts[s + 1], s);
-    std::vector<int> owner(static_cast<std::size_t>(size_), nobody);
-    for (int c = 0; c < size_; ++c)
-        for (int k = A.column_starts[c]; k < A.column_starts[c + 1]; ++k) {
-            const int stretch = stretch_of[A.rows[k]];
-            owner[c] = owner[c] == nobody || owner[c] == stretch ? stretch : several;
-        }
+    std::vector<int> owner(static_cast<std::size_t>(size_), several);
+    for (int c = 0; c < size_; ++c) {
+        if (A.column_starts[c] == A.column_starts[c + 1]) continue;
+        // rows ascend, and so do their stretches
+        const int of_first = stretch_of[A.rows[A.column_starts[c]]],
+                  of_last = stretch_of[A.rows[A.column_starts[c + 1] - 1]];
+        if (of_first == of_last) owner[c] = of_first;
+    }
     shared_.clear();
     column_places_.assign(static_cast<std::size_t>(size_), -1);
     for (int c = 0; c < size_; ++c)
@@ -74,6 +76,8 @@ void StaircaseLU::analyse(const SparseMatrix& A, std::span<const int> cuts)
             shared_.push_back(c);
         }
     std::vector<std::vector<int>> own(static_cast<std::size_t>(n)), kept(own);
+    std::vector<int> work(static_cast<std::size_t>(size_));
+    for (std::vector<int>& columns : own) columns.reserve(static_cast<std::size_t>(size_ / n));
     for (int c = 0; c < size_; ++c) {
         if (owner[c] >= 0) own[owner[c]].push_back(c);
         for (int k = A.column_starts[c]; owner[c] < 0 && k < A.column_starts[c + 1]; ++k) {
@@ -86,7 +90,8 @@ void StaircaseLU::analyse(const SparseMatrix& A, std::span<const int> cuts)
     for (int s = 0; s < n; ++s) {
         // from both ends of time towards the middle: nothing of the ends is kept then
         if (s > 0 && s == n - 1) std::ranges::reverse(own[s]);
-        parts_->stretches[s].analyse(rows, cuts[s], cuts[s + 1], std::move(own[s]), std::move(kept[s]));
+        parts_->stretches[s].analyse(rows, {cuts[s], cuts[s + 1]}, std::move(own[s]), std::move(kept[s]),
+                                     work);
     }
     values_.assign(static_cast<std::size_t>(size_), 0.0);
 }
@@ -129,7 +134,8 @@ bool StaircaseLU::join()
     if (parts_->left.size() != std::ssize(shared_)) return false;
     std::vector<int> all(shared_.size());
     std::iota(all.begin(), all.end(), 0);
-    parts_->last.analyse(parts_->left, 0, parts_->left.size(), std::move(all), {});
+    std::vector<int> work(all);
+    parts_->last.analyse(parts_->left, {0, parts_->left.size()}, std::move(all), {}, work);
     return parts_->last.eliminate(parts_->left);
 }
 

@@ -33,6 +33,8 @@ void Front::resize(int window, int n_kept)
     values_.clear();
     bits_.clear();
     free_.clear();
+    row_words_ = 1;
+    holders_.assign(static_cast<std::size_t>(window), 0);
 }
 
 int Front::take()
@@ -41,6 +43,14 @@ int Front::take()
         free_.push_back(n_rows_++);
         values_.resize(static_cast<std::size_t>(n_rows_) * static_cast<std::size_t>(width_), 0.0);
         bits_.resize(static_cast<std::size_t>(n_rows_) * static_cast<std::size_t>(n_words_), 0);
+        if (n_rows_ > 64 * row_words_) {
+            std::vector<std::uint64_t> more(static_cast<std::size_t>(2 * row_words_ * window_), 0);
+            for (int slot = 0; slot < window_; ++slot)
+                std::copy_n(holders(slot), row_words_,
+                            more.data() + static_cast<std::ptrdiff_t>(slot) * 2 * row_words_);
+            holders_ = std::move(more);
+            row_words_ *= 2;
+        }
     }
     const int row = free_.back();
     free_.pop_back();
@@ -64,49 +74,50 @@ void StretchFactors::end_pivot()
     lower_starts.push_back(lower.size());
 }
 
-void Stretch::analyse(const StoredRows& rows, int first, int last, std::vector<int> own,
-                      std::vector<int> kept)
+void Stretch::analyse(const StoredRows& rows, std::pair<int, int> of, std::vector<int> own,
+                      std::vector<int> kept, std::vector<int>& work)
 {
     pattern_.own = std::move(own);
     pattern_.kept = std::move(kept);
-    const int n = n_own(), none = std::numeric_limits<int>::max();
-    std::vector<std::pair<int, int>> place_of;   // of columns
-    place_of.reserve(pattern_.own.size() + pattern_.kept.size());
-    for (int i = 0; i < n; ++i) place_of.emplace_back(pattern_.own[i], i);
-    for (int i = 0; i < static_cast<int>(pattern_.kept.size()); ++i)
-        place_of.emplace_back(pattern_.kept[i], n + i);
-    std::ranges::sort(place_of);
-    const int lowest = place_of.empty() ? 0 : place_of.front().first;
-    const int n_columns = place_of.empty() ? 0 : place_of.back().first - lowest + 1;
-    std::vector<int> places(static_cast<std::size_t>(n_columns), -1);
-    for (const auto& [column, place] : place_of) places[column - lowest] = place;
-    std::vector<int> begin(static_cast<std::size_t>(last - first), none), end(begin.size(), -1);
-    for (int r = first; r < last; ++r)
+    const auto [first, last] = of;
+    const int n = n_own(), n_kept = static_cast<int>(pattern_.kept.size());
+    for (int i = 0; i < n; ++i) work[pattern_.own[i]] = i;
+    for (int i = 0; i < n_kept; ++i) work[pattern_.kept[i]] = n + i;
+    pattern_.first_entry = rows.starts[first];
+    pattern_.places.resize(static_cast<std::size_t>(rows.starts[last] - rows.starts[first]));
+    // of rows, n: they see no own column; and how many begin before a place
+    std::vector<int> begins(static_cast<std::size_t>(last - first)), ends(begins);
+    std::vector<int> n_before(static_cast<std::size_t>(n) + 2, 0);
+    int* place = pattern_.places.data();
+    for (int r = first; r < last; ++r) {
+        int begin = n, end = -1;
         for (int k = rows.starts[r]; k < rows.starts[r + 1]; ++k) {
-            const int place = places[rows.columns[k] - lowest];
-            if (place >= n) continue;
-            begin[r - first] = std::min(begin[r - first], place);
-            end[r - first] = std::max(end[r - first], place);
+            const int at = work[rows.columns[k]];
+            *place++ = at;
+            begin = std::min(begin, at);
+            end = at < n ? std::max(end, at) : end;
         }
-    pattern_.rows.resize(begin.size());
-    for (int r = first; r < last; ++r) pattern_.rows[r - first] = r;
-    std::ranges::stable_sort(pattern_.rows, {}, [&](int r) { return begin[r - first]; });
-    pattern_.begins.clear();
-    pattern_.places.clear();
-    pattern_.place_starts.assign(1, 0);
+        begins[r - first] = begin;
+        ends[r - first] = end;
+        ++n_before[begin + 1];
+    }
+    for (int i = 0; i <= n; ++i) n_before[i + 1] += n_before[i];
+    pattern_.rows.resize(begins.size());
+    pattern_.begins.resize(begins.size());
+    for (int r = first; r < last; ++r) {
+        const int at = n_before[begins[r - first]]++;
+        pattern_.rows[at] = r;
+        pattern_.begins[at] = begins[r - first];
+    }
     int reach = -1;
     std::size_t widest = 1;
     for (const int r : pattern_.rows) {
-        pattern_.begins.push_back(begin[r - first]);
-        for (int k = rows.starts[r]; k < rows.starts[r + 1]; ++k)
-            pattern_.places.push_back(places[rows.columns[k] - lowest]);
-        pattern_.place_starts.push_back(static_cast<int>(pattern_.places.size()));
-        if (begin[r - first] == none) continue;
-        reach = std::max(reach, end[r - first]);
-        widest = std::max(widest, static_cast<std::size_t>(reach - begin[r - first] + 1));
+        if (begins[r - first] == n) break;
+        reach = std::max(reach, ends[r - first]);
+        widest = std::max(widest, static_cast<std::size_t>(reach - begins[r - first] + 1));
     }
     pattern_.window = static_cast<int>(std::bit_ceil(widest));
-    front_.resize(pattern_.window, static_cast<int>(pattern_.kept.size()));
+    front_.resize(pattern_.window, n_kept);
     x_.assign(pattern_.own.size() + pattern_.kept.size(), 0.0);
 }
 
@@ -118,33 +129,37 @@ void Stretch::enter(const StoredRows& rows, int k, std::size_t& next)
         const int row = pattern_.rows[next], at = front_.take();
         double* values = front_.row(at);
         std::uint64_t* bits = front_.bits(at);
-        const double* value = rows.values.data() + rows.starts[row];
-        for (int i = pattern_.place_starts[next]; i < pattern_.place_starts[next + 1]; ++i, ++value) {
-            if (*value == 0) continue;
-            const int place = pattern_.places[i];
+        for (int i = rows.starts[row]; i < rows.starts[row + 1]; ++i) {
+            const double value = rows.values[i];
+            if (value == 0) continue;
+            const int place = pattern_.places[i - pattern_.first_entry];
             const int slot = place < n ? front_.slot(place) : pattern_.window + place - n;
-            values[slot] = *value;
+            values[slot] = value;
             bits[slot / 64] |= std::uint64_t{1} << (slot % 64);
-            if (place < n) largest_[place] = std::max(largest_[place], std::abs(*value));
+            if (place >= n) continue;
+            front_.mark(slot, at);
+            largest_[place] = std::max(largest_[place], std::abs(value));
         }
-        active_.push_back({row, at});
+        if (at >= std::ssize(row_at_)) row_at_.resize(static_cast<std::size_t>(at) + 1, -1);
+        row_at_[at] = row;
     }
 }
 
 /// The rows that hold column k, and of these the one with the largest entry; -1: none is large enough.
 int Stretch::choose(int k)
 {
-    const int slot = front_.slot(k), word = slot / 64;
-    const std::uint64_t bit = std::uint64_t{1} << (slot % 64);
+    const int slot = front_.slot(k);
     candidates_.clear();
     int pivot = -1;
     double largest = 0;
-    for (int i = 0; i < static_cast<int>(active_.size()); ++i) {
-        if ((front_.bits(active_[i].place)[word] & bit) == 0) continue;
-        candidates_.push_back(i);
-        const double size = std::abs(front_.row(active_[i].place)[slot]);
-        if (!(size <= largest)) largest = size, pivot = i;
-    }
+    const std::uint64_t* holders = front_.holders(slot);
+    for (int w = 0; w < front_.row_words(); ++w)
+        for (std::uint64_t left = holders[w]; left != 0; left &= left - 1) {
+            const int place = 64 * w + std::countr_zero(left);
+            candidates_.push_back(place);
+            const double size = std::abs(front_.row(place)[slot]);
+            if (!(size <= largest)) largest = size, pivot = place;
+        }
     return std::isfinite(largest) && largest > least_pivot * largest_[k] ? pivot : -1;
 }
 
@@ -177,14 +192,28 @@ void Stretch::find_runs(int k, const std::uint64_t* bits)
         }
 }
 
+/// What a row takes over of the places of another one's numbers.
+void Stretch::take_bits(const std::uint64_t* bits, int place)
+{
+    std::uint64_t* own = front_.bits(place);
+    for (int w = 0; w < front_.n_words(); ++w) {
+        std::uint64_t fresh = bits[w] & ~own[w];
+        own[w] |= bits[w];
+        for (; fresh != 0; fresh &= fresh - 1) {
+            const int slot = 64 * w + std::countr_zero(fresh);
+            if (slot >= front_.window()) break;
+            front_.mark(slot, place);
+        }
+    }
+}
+
 /// The pivot row goes into the factors, and is taken off the other candidates.
-void Stretch::take_off(int k, int of)
+void Stretch::take_off(int k, int pivot_place)
 {
     const int slot = front_.slot(k), word = slot / 64;
     const std::uint64_t others = ~(std::uint64_t{1} << (slot % 64));
-    const auto [row, place] = active_[of];
-    double* values = front_.row(place);
-    std::uint64_t* bits = front_.bits(place);
+    double* values = front_.row(pivot_place);
+    std::uint64_t* bits = front_.bits(pivot_place);
     const double pivot = values[slot];
     values[slot] = 0;
     bits[word] &= others;
@@ -194,15 +223,14 @@ void Stretch::take_off(int k, int of)
     for (std::size_t r = first_run; r < runs.size(); ++r)
         factors_.upper.insert(factors_.upper.end(), values + runs[r].slot,
                               values + runs[r].slot + runs[r].size);
-    for (const int i : candidates_) {
-        if (i == of) continue;
-        double* y = front_.row(active_[i].place);
-        std::uint64_t* own_bits = front_.bits(active_[i].place);
+    for (const int place : candidates_) {
+        if (place == pivot_place) continue;
+        double* y = front_.row(place);
         const double factor = y[slot] / pivot;
         y[slot] = 0;
-        own_bits[word] &= others;
+        front_.bits(place)[word] &= others;
         if (factor == 0) continue;
-        factors_.lower.push_back({active_[i].row, factor});
+        factors_.lower.push_back({row_at_[place], factor});
         const double* __restrict u = factors_.upper.data() + first_upper;
         for (std::size_t r = first_run; r < runs.size(); ++r) {
             double* __restrict to = y + runs[r].slot;
@@ -210,16 +238,28 @@ void Stretch::take_off(int k, int of)
             for (int j = 0; j < size; ++j) to[j] -= factor * u[j];
             u += size;
         }
-        for (int w = 0; w < front_.n_words(); ++w) own_bits[w] |= bits[w];
+        take_bits(bits, place);
     }
-    for (std::size_t r = first_run; r < runs.size(); ++r)
+    factors_.rows.push_back(row_at_[pivot_place]);
+    factors_.diagonal.push_back(pivot);
+    std::fill_n(front_.holders(slot), front_.row_words(), 0);
+    drop(pivot_place, first_run);
+}
+
+/// A pivot row leaves the front; its runs begin at `first_run`.
+void Stretch::drop(int place, std::size_t first_run)
+{
+    double* values = front_.row(place);
+    std::uint64_t* bits = front_.bits(place);
+    const std::vector<NumberRun>& runs = factors_.runs;
+    for (std::size_t r = first_run; r < runs.size(); ++r) {
         std::fill_n(values + runs[r].slot, runs[r].size, 0.0);
+        for (int slot = runs[r].slot; slot < runs[r].slot + runs[r].size && slot < front_.window(); ++slot)
+            front_.unmark(slot, place);
+    }
     std::fill_n(bits, front_.n_words(), 0);
     front_.give_back(place);
-    active_[of] = active_.back();
-    active_.pop_back();
-    factors_.rows.push_back(row);
-    factors_.diagonal.push_back(pivot);
+    row_at_[place] = -1;
 }
 
 bool Stretch::eliminate(const StoredRows& rows)
@@ -227,7 +267,7 @@ bool Stretch::eliminate(const StoredRows& rows)
     const int n = n_own();
     largest_.assign(pattern_.own.size(), 0.0);
     front_.resize(pattern_.window, static_cast<int>(pattern_.kept.size()));
-    active_.clear();
+    row_at_.clear();
     factors_.clear();
     std::size_t next = 0;
     for (int k = 0; k < n; ++k) {
@@ -246,15 +286,18 @@ bool Stretch::eliminate(const StoredRows& rows)
 /// What is left in the front.
 void Stretch::leave()
 {
-    std::ranges::sort(active_, {}, &InFront::row);
+    std::vector<std::pair<int, int>> rows;   // of the matrix, and their places
+    for (int place = 0; place < static_cast<int>(row_at_.size()); ++place)
+        if (row_at_[place] >= 0) rows.emplace_back(row_at_[place], place);
+    std::ranges::sort(rows);
     left_.clear();
     left_values_.clear();
-    for (const auto& [row, place] : active_) {
+    for (const auto& [row, place] : rows) {
         left_.push_back(row);
         const double* values = front_.row(place) + pattern_.window;
         left_values_.insert(left_values_.end(), values, values + pattern_.kept.size());
     }
-    active_.clear();
+    row_at_.clear();
 }
 
 void Stretch::forward(double* y) const

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace livens::inline solvers_internal {
@@ -19,7 +20,7 @@ struct StoredRows {
 };
 
 /// Rows on their way: dense, over a window of columns that goes with the pivots, and behind it columns that
-/// are kept; with a bit for every number that may differ from zero.
+/// are kept; with a bit for every number that may differ from zero, by rows and, in the window, by columns.
 class Front {
 public:
     void resize(int window, int n_kept);
@@ -36,11 +37,19 @@ public:
         return bits_.data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(n_words_);
     }
     int n_words() const { return n_words_; }
+    /// Rows that may differ from zero at a slot of the window.
+    std::uint64_t* holders(int slot)
+    {
+        return holders_.data() + static_cast<std::ptrdiff_t>(slot) * row_words_;
+    }
+    int row_words() const { return row_words_; }
+    void mark(int slot, int row) { holders(slot)[row / 64] |= std::uint64_t{1} << (row % 64); }
+    void unmark(int slot, int row) { holders(slot)[row / 64] &= ~(std::uint64_t{1} << (row % 64)); }
 
 private:
-    int window_ = 0, width_ = 0, n_words_ = 0, n_rows_ = 0;
+    int window_ = 0, width_ = 0, n_words_ = 0, n_rows_ = 0, row_words_ = 1;
     std::vector<double> values_;
-    std::vector<std::uint64_t> bits_;
+    std::vector<std::uint64_t> bits_, holders_;
     std::vector<int> free_;
 };
 
@@ -56,12 +65,13 @@ struct Multiplier {
     double factor;
 };
 
-/// Rows as they enter: the places of their first own column, and of all their entries among own columns, then
-/// kept ones.
+/// Rows as they enter, the places of their first own columns, and those of all entries among own columns,
+/// then kept ones, as the entries are stored.
 struct StretchPattern {
     int window = 1;   ///< own columns between the first and the last that any row in the front sees, at most
     std::vector<int> own, kept;
-    std::vector<int> rows, begins, places, place_starts;
+    std::vector<int> rows, begins, places;
+    int first_entry = 0;
 };
 
 /// Of every pivot: its row, the pivot, the runs of the rest of its row, and what others were taken of it.
@@ -79,8 +89,9 @@ struct StretchFactors {
 class Stretch {
 public:
     /// Rows first..last - 1; `own`: columns to be eliminated, in this order; `kept`: all others that these
-    /// rows see.
-    void analyse(const StoredRows& rows, int first, int last, std::vector<int> own, std::vector<int> kept);
+    /// rows see. `work`: as many numbers as there are columns.
+    void analyse(const StoredRows& rows, std::pair<int, int> of, std::vector<int> own, std::vector<int> kept,
+                 std::vector<int>& work);
     /// False: see StaircaseLU.
     bool eliminate(const StoredRows& rows);
 
@@ -99,23 +110,21 @@ public:
     void backward(const double* y, double* x) const;
 
 private:
-    /// A row of the matrix, and its place in the front.
-    struct InFront {
-        int row, place;
-    };
     int n_own() const { return static_cast<int>(pattern_.own.size()); }
     void enter(const StoredRows& rows, int k, std::size_t& next);
     int choose(int k);
     void find_runs(int k, const std::uint64_t* bits);
-    void take_off(int k, int pivot);
+    void take_bits(const std::uint64_t* bits, int place);
+    void take_off(int k, int pivot_place);
+    void drop(int place, std::size_t first_run);
     void leave();
 
     StretchPattern pattern_;
     StretchFactors factors_;
     std::vector<double> largest_;   // of own columns
     Front front_;
-    std::vector<InFront> active_;
-    std::vector<int> candidates_;   // of active_, for the pivot at hand
+    std::vector<int> row_at_;       // of the matrix, at every place of the front; -1: it is free
+    std::vector<int> candidates_;   // places, for the pivot at hand
     std::vector<int> left_;
     std::vector<double> left_values_;
     mutable std::vector<double> x_;

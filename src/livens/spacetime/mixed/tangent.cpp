@@ -5,7 +5,6 @@
 #include "livens/spacetime/mixed/tangent.h"
 
 #include <algorithm>
-#include <cstdint>
 
 #include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
@@ -17,42 +16,6 @@ namespace {
 constexpr int least_shared_functions = 16;   // that a thread takes, where there are several
 
 }   // namespace
-
-void MatrixPattern::collect()
-{
-    places_.clear();
-    parts_.assign(1, 0);
-}
-
-/// Sorted by rows, then by columns, each by counting.
-void MatrixPattern::make(int size, SparseMatrix& J)
-{
-    const std::size_t n = places_.size();
-    std::vector<std::size_t> starts(static_cast<std::size_t>(size) + 1, 0);
-    std::vector<std::uint32_t> by_row(n), by_column(n);
-    for (const auto& [row, column] : places_) ++starts[row + 1];
-    for (int i = 0; i < size; ++i) starts[i + 1] += starts[i];
-    for (std::size_t i = 0; i < n; ++i) by_row[starts[places_[i].first]++] = static_cast<std::uint32_t>(i);
-    std::ranges::fill(starts, 0);
-    for (const auto& [row, column] : places_) ++starts[column + 1];
-    for (int i = 0; i < size; ++i) starts[i + 1] += starts[i];
-    for (const std::uint32_t i : by_row) by_column[starts[places_[i].second]++] = i;
-    J.size = size;
-    J.column_starts.assign(1, 0);
-    J.rows.clear();
-    slots_.resize(n);
-    std::size_t k = 0;
-    for (int c = 0; c < size; ++c) {
-        for (int last = -1; k < n && places_[by_column[k]].second == c; ++k) {
-            const int row = places_[by_column[k]].first;
-            if (row != last) J.rows.push_back(row);
-            last = row;
-            slots_[by_column[k]] = static_cast<int>(J.rows.size()) - 1;
-        }
-        J.column_starts.push_back(static_cast<int>(J.rows.size()));
-    }
-    places_ = {};   // as many as the entries of all elements: nobody needs them any more
-}
 
 Tangent::Tangent(const Equations& equations)
     : equations_(equations), space_(equations.space()), sums_(1, ElementSums(equations.space()))
@@ -71,7 +34,7 @@ bool Tangent::evaluate(const Fields& fields, SparseMatrix& J)
         in_shares(space_.functions.space().size(), least_shared_functions, [&](int slot, int begin, int end) {
             add_share(fields, J, slot, {begin, end});
         });
-        EntrySink all{&pattern_, J.values.data(), pattern_.slots(space_.functions.n_elements()), 0, J.size};
+        EntrySink all{&pattern_, J.values.data(), pattern_.of_ends(), 0, J.size};
         add_boundary(&fields, all);
         // Loads show where their tangents differ from zero as they go: one more entry, one more pattern.
         LoadSums& seen = sums_.front().loads;
@@ -87,13 +50,13 @@ bool Tangent::evaluate(const Fields& fields, SparseMatrix& J)
 void Tangent::add_share(const Fields& fields, SparseMatrix& J, int slot, std::pair<int, int> functions)
 {
     const auto [first, last] = space_.functions.elements_of(functions.first, functions.second);
-    EntrySink entries{&pattern_, J.values.data(), nullptr, first_row(functions.first),
-                      first_row(functions.second)};
+    EntrySink entries{
+        &pattern_, J.values.data(), {}, first_row(functions.first), first_row(functions.second)};
     ElementSums& sums = sums_[static_cast<std::size_t>(slot)];
     for (int e = first; e < last; ++e) {
         Patience::ask();
         sums.integrate(fields, e);
-        entries.slots = pattern_.slots(e);
+        entries.at = pattern_.of_element(e);
         add_element(e, sums, entries);
     }
 }
@@ -106,14 +69,54 @@ int Tangent::first_row(int function) const
     return function < numbering.n_functions() - 1 ? numbering.row_dP(function) : numbering.size();
 }
 
+/// Numbers by which all rows and unknowns of element e come after those of the one before; 0: they are not
+/// alike.
+int Tangent::stride_before(int e) const
+{
+    const BlockFunctions& functions = space_.functions;
+    const Numbering& n = space_.numbering;
+    if (e == 0) return 0;
+    const int A = functions.first(e), B = functions.first(e - 1);
+    const int stride = n.X(A) - n.X(B);
+    bool is_alike = stride > 0;
+    const auto compare = [&](int here, int before) {
+        is_alike = is_alike && before >= 0 && here - before == stride;
+    };
+    for (int a = 0; a < functions.n_local(); ++a) {
+        compare(n.X(A + a), n.X(B + a));
+        compare(n.P(A + a), n.P(B + a));
+        compare(n.row_dX(A + a), n.row_dX(B + a));
+        compare(n.row_dP(A + a), n.row_dP(B + a));
+    }
+    const int L = functions.first_multiplier(e), K = functions.first_multiplier(e - 1);
+    const int test_L = functions.multipliers().first(e), test_K = functions.multipliers().first(e - 1);
+    for (int a = 0; a < functions.n_local_multipliers(); ++a) {
+        compare(n.lambda(L + a), n.lambda(K + a));
+        compare(n.row_dlambda(test_L + a), n.row_dlambda(test_K + a));
+    }
+    return is_alike ? stride : 0;
+}
+
+/// Of elements that are alike those are taken down whose functions others see, too, and one more.
 void Tangent::make_pattern(SparseMatrix& J)
 {
     pattern_.collect();
     EntrySink entries;
     entries.pattern = &pattern_;
-    for (int e = 0; e < space_.functions.n_elements(); ++e) {
-        add_element(e, sums_.front(), entries);
-        pattern_.end_part();
+    const int n = space_.functions.n_elements(), kept = 2 * space_.functions.n_local() + 1;
+    for (int first = 0, end = 0; first < n; first = end) {
+        for (end = first + 1; end < n; ++end) {
+            const int stride = stride_before(end);
+            if (stride == 0 || (end > first + 1 && stride != stride_before(end - 1))) break;
+        }
+        for (int e = first; e < end; ++e) {
+            add_element(e, sums_.front(), entries);
+            pattern_.end_element();
+            if (e != first + kept - 1 || end - first <= 2 * kept) continue;
+            const int times = end - first - 2 * kept;
+            pattern_.repeat(times, stride_before(e), space_.numbering.X(space_.functions.first(e + 1)));
+            e += times;
+        }
     }
     add_boundary(nullptr, entries);
     pattern_.make(space_.size(), J);
@@ -217,6 +220,7 @@ void Tangent::add_boundary(const Fields* fields, EntrySink& entries) const
         const int row = space_.numbering.row_dX(A), X = space_.numbering.X(A);
         const std::vector<TurningMomentum>& turning = equations_.given(at_end).turning;
         if (row < 0 || X < 0 || turning.empty()) continue;
+        if (fields == nullptr) entries.pattern->stand_at(at_end);
         std::vector<Matrix34> places;
         if (fields != nullptr) places = space_.end_position(*fields, at_end);
         for (int body = 0; body < m.n_bodies(); ++body) {

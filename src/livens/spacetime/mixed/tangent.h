@@ -11,21 +11,55 @@
 
 namespace livens::mixed {
 
-/// Entries that are made again and again in one order: their places are found once.
+/// Entries that are made again and again in one order: their places are found once. Of many elements in a row
+/// that are alike, each `stride` rows and columns after the one before, some are taken down, and the others
+/// follow from them.
 class MatrixPattern {
 public:
+    /// Of the entries of an element: where each stands among the values of the matrix, less an offset.
+    struct Slots {
+        const int* slots;
+        int offset;
+    };
+
     /// Places are taken down from here on.
     void collect();
-    void take_down(int row, int column) { places_.emplace_back(row, column); }
-    void end_part() { parts_.push_back(places_.size()); }
+    void take_down(int row, int column) { places_.emplace_back(row - shift_, column - shift_); }
+    void end_element();
+    /// `times` elements that are like the last one follow; the unknowns of the first of these begin at
+    /// `column`. The columns of the last one, and those which its rows see, must be alike as well.
+    void repeat(int times, int stride, int column);
+    /// What is taken down stands at the start of time, or at its end.
+    void stand_at(bool end) { shift_ = end ? left_out_ : 0; }
     /// Gives J the pattern of these places.
     void make(int size, SparseMatrix& J);
-    /// Of the entries of a part: where each stands among the values of the matrix.
-    const int* slots(int part) const { return slots_.data() + parts_[static_cast<std::size_t>(part)]; }
+    Slots of_element(int e) const
+    {
+        const Element& element = elements_[static_cast<std::size_t>(e)];
+        return {slots_.data() + element.begin, element.offset};
+    }
+    Slots of_ends() const { return {slots_.data() + first_of_ends_, 0}; }
 
 private:
-    std::vector<std::pair<int, int>> places_;
-    std::vector<std::size_t> parts_;   // begins of elements, and of what stands at the ends of time
+    struct Element {
+        std::size_t begin;   // of its places, or of those of the one that it is like
+        int n_cuts, copy;    // before it, and how many elements after that one
+        int offset = 0;
+    };
+    /// Behind the columns before `column` as many as an element has are left out, `times`.
+    struct Cut {
+        int column, times, stride;
+        int entries = 0;   // of the columns of an element
+    };
+    void sort(int size, SparseMatrix& short_J);
+    void take_offsets();
+    void draw_out(int size, const SparseMatrix& short_J, SparseMatrix& J) const;
+
+    std::vector<std::pair<int, int>> places_;   // as if what is left out was not there
+    std::vector<Element> elements_;
+    std::vector<Cut> cuts_;
+    int shift_ = 0, left_out_ = 0;   // numbers that are left out before what is taken down, and in all
+    std::size_t first_of_element_ = 0, first_of_ends_ = 0;
     std::vector<int> slots_;
 };
 
@@ -33,13 +67,13 @@ private:
 struct EntrySink {
     MatrixPattern* pattern = nullptr;
     double* values = nullptr;
-    const int* slots = nullptr;
+    MatrixPattern::Slots at{};
     int low = 0, high = 0;
 
     void add(int row, int column, double value)
     {
         if (values == nullptr) return pattern->take_down(row, column);
-        const int slot = *slots++;
+        const int slot = at.offset + *at.slots++;
         if (row >= low && row < high) values[slot] += value;
     }
 };
@@ -54,6 +88,7 @@ public:
 
 private:
     void make_pattern(SparseMatrix& J);
+    int stride_before(int e) const;
     void add_share(const Fields& fields, SparseMatrix& J, int slot, std::pair<int, int> functions);
     void add_element(int e, const ElementSums& sums, EntrySink& entries) const;
     void add_momenta(int e, const ElementSums& sums, EntrySink& entries) const;
