@@ -220,9 +220,8 @@ void Stretch::take_off(int k, int pivot_place)
     const std::size_t first_run = factors_.runs.size(), first_upper = factors_.upper.size();
     find_runs(k, bits);
     const std::vector<NumberRun>& runs = factors_.runs;
-    for (std::size_t r = first_run; r < runs.size(); ++r)
-        factors_.upper.insert(factors_.upper.end(), values + runs[r].slot,
-                              values + runs[r].slot + runs[r].size);
+    for (std::size_t r = first_run; r < runs.size(); ++r)   // short
+        for (int i = 0; i < runs[r].size; ++i) factors_.upper.push_back(values[runs[r].slot + i]);
     for (const int place : candidates_) {
         if (place == pivot_place) continue;
         double* y = front_.row(place);
@@ -252,11 +251,11 @@ void Stretch::drop(int place, std::size_t first_run)
     double* values = front_.row(place);
     std::uint64_t* bits = front_.bits(place);
     const std::vector<NumberRun>& runs = factors_.runs;
-    for (std::size_t r = first_run; r < runs.size(); ++r) {
-        std::fill_n(values + runs[r].slot, runs[r].size, 0.0);
-        for (int slot = runs[r].slot; slot < runs[r].slot + runs[r].size && slot < front_.window(); ++slot)
-            front_.unmark(slot, place);
-    }
+    for (std::size_t r = first_run; r < runs.size(); ++r)
+        for (int slot = runs[r].slot; slot < runs[r].slot + runs[r].size; ++slot) {
+            values[slot] = 0;
+            if (slot < front_.window()) front_.unmark(slot, place);
+        }
     std::fill_n(bits, front_.n_words(), 0);
     front_.give_back(place);
     row_at_[place] = -1;

@@ -166,7 +166,7 @@ std::vector<double> Coordinates::multipliers(const State& state) const
     return {x.begin() + size, x.end()};
 }
 
-/// G m^-1 G^T lambda = G m^-1 F - (G X''), dense.
+/// G m^-1 G^T lambda = G m^-1 F - (G X''), dense but for bodies that a row does not see.
 std::vector<double> Coordinates::multipliers_of_few(const std::vector<double>& F,
                                                     std::vector<double> right_side,
                                                     const std::vector<double>& values) const
@@ -174,23 +174,36 @@ std::vector<double> Coordinates::multipliers_of_few(const std::vector<double>& F
     const int n = n_rows();
     const auto wide = static_cast<std::size_t>(size);
     std::vector<double> G(static_cast<std::size_t>(n) * wide, 0.0), T(wide);
-    for (std::size_t i = 0; i < values.size(); ++i)
-        G[static_cast<std::size_t>(gradient_entries[i].row) * wide +
-          static_cast<std::size_t>(gradient_entries[i].coordinate)] = values[i];
+    std::vector<char> sees(static_cast<std::size_t>(n * n_bodies()), 0);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const auto [row, coordinate] = std::pair(gradient_entries[i].row, gradient_entries[i].coordinate);
+        G[static_cast<std::size_t>(row) * wide + static_cast<std::size_t>(coordinate)] = values[i];
+        sees[row * n_bodies() + (std::ranges::upper_bound(first, coordinate) - first.begin()) - 1] = 1;
+    }
     Cholesky schur;
     schur.resize(n);
     for (int k = 0; k < n; ++k) {
         const double* g = G.data() + static_cast<std::size_t>(k) * wide;
-        for (int b = 0; b < n_bodies(); ++b)
-            for (int i = 0; i < n_numbers(b); ++i) {
-                double sum = 0;
-                for (int c = i % 3; c < n_numbers(b); c += 3)
-                    sum += inverse_masses[b](i / 3, c / 3) * g[first[b] + c];
-                T[static_cast<std::size_t>(first[b] + i)] = sum;
-            }
-        for (int j = 0; j <= k; ++j)
-            schur.row(k)[j] = dot({G.data() + static_cast<std::size_t>(j) * wide, wide}, T);
-        right_side[static_cast<std::size_t>(k)] = dot(T, F) - right_side[static_cast<std::size_t>(k)];
+        for (int j = 0; j <= k; ++j) schur.row(k)[j] = 0;
+        double along = 0;
+        for (int b = 0; b < n_bodies(); ++b) {
+            if (!sees[k * n_bodies() + b]) continue;
+            const int begin = first[b], m = n_numbers(b);
+            std::fill_n(T.begin() + begin, m, 0.0);
+            for (int i = 0; i < m; i += 3)
+                for (int c = 0; c < m; c += 3) {
+                    const double inverse = inverse_masses[b](i / 3, c / 3);
+                    if (inverse == 0) continue;
+                    for (int q = 0; q < 3; ++q) T[begin + i + q] += inverse * g[begin + c + q];
+                }
+            const std::span<const double> own(T.data() + begin, static_cast<std::size_t>(m));
+            for (int j = 0; j <= k; ++j)
+                if (sees[j * n_bodies() + b])
+                    schur.row(k)[j] +=
+                        dot({G.data() + static_cast<std::size_t>(j) * wide + begin, own.size()}, own);
+            along += dot(own, {F.data() + begin, own.size()});
+        }
+        right_side[static_cast<std::size_t>(k)] = along - right_side[static_cast<std::size_t>(k)];
     }
     if (schur.factorise())
         schur.solve(right_side.data());
