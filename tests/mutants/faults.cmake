@@ -1895,7 +1895,7 @@ livens_mutant(NAME stretches_without_pivoting
 # What eliminations put into the rows of others is not looked at.
 livens_mutant(NAME fill_in_of_stretches_forgotten
               FILE solvers/stretch.cpp
-              OLD [[        take_bits(bits, place);]]
+              OLD [[        take_bits(bits, words, place);]]
               NEW [[        ;]]
               TESTS_OF unit_solvers
               MUST_FAIL Staircase.SolvesWhatTheGeneralSolverSolves)

@@ -23,18 +23,30 @@ constexpr int least_shared_rows = 1000;   // that a thread copies
 void take_rows(const SparseMatrix& A, StoredRows& rows, std::vector<int>& places)
 {
     rows.starts.assign(static_cast<std::size_t>(A.size) + 1, 0);
-    for (const int row : A.rows) ++rows.starts[row + 1];
-    std::partial_sum(rows.starts.begin(), rows.starts.end(), rows.starts.begin());
     rows.columns.resize(A.rows.size());
-    rows.values.assign(A.rows.size(), 0.0);
+    rows.values.resize(A.rows.size());
     places.resize(A.rows.size());
-    std::vector<int> next(rows.starts.begin(), rows.starts.end() - 1);
-    for (int c = 0; c < A.size; ++c)
-        for (int k = A.column_starts[c]; k < A.column_starts[c + 1]; ++k) {
-            const int at = next[A.rows[k]]++;
-            rows.columns[at] = c;
-            places[at] = k;
+    // act(row, entry, column), columns ascending, of the rows of a share; a column's rows ascend
+    const auto for_entries = [&](int begin, int end, const auto& act) {
+        for (int c = 0; c < A.size; ++c) {
+            const int first = A.column_starts[c], last = A.column_starts[c + 1];
+            if (first == last || A.rows[first] >= end || A.rows[last - 1] < begin) continue;
+            for (int k = first; k < last; ++k)
+                if (A.rows[k] >= begin && A.rows[k] < end) act(A.rows[k], k, c);
         }
+    };
+    in_shares(A.size, least_shared_rows, [&](int, int begin, int end) {
+        for_entries(begin, end, [&](int row, int, int) { ++rows.starts[row + 1]; });
+    });
+    std::partial_sum(rows.starts.begin(), rows.starts.end(), rows.starts.begin());
+    std::vector<int> next(rows.starts.begin(), rows.starts.end() - 1);
+    in_shares(A.size, least_shared_rows, [&](int, int begin, int end) {
+        for_entries(begin, end, [&](int row, int entry, int column) {
+            const int at = next[row]++;
+            rows.columns[at] = column;
+            places[at] = entry;
+        });
+    });
 }
 
 }   // namespace
@@ -76,7 +88,7 @@ void StaircaseLU::analyse(const SparseMatrix& A, std::span<const int> cuts)
             shared_.push_back(c);
         }
     std::vector<std::vector<int>> own(static_cast<std::size_t>(n)), kept(own);
-    std::vector<int> work(static_cast<std::size_t>(size_));
+    std::vector<std::vector<int>> work(static_cast<std::size_t>(Crew::size()));
     for (std::vector<int>& columns : own) columns.reserve(static_cast<std::size_t>(size_ / n));
     for (int c = 0; c < size_; ++c) {
         if (owner[c] >= 0) own[owner[c]].push_back(c);
@@ -87,12 +99,15 @@ void StaircaseLU::analyse(const SparseMatrix& A, std::span<const int> cuts)
     }
     parts_->stretches.clear();
     parts_->stretches.resize(static_cast<std::size_t>(n));
-    for (int s = 0; s < n; ++s) {
-        // from both ends of time towards the middle: nothing of the ends is kept then
-        if (s > 0 && s == n - 1) std::ranges::reverse(own[s]);
-        parts_->stretches[s].analyse(rows, {cuts[s], cuts[s + 1]}, std::move(own[s]), std::move(kept[s]),
-                                     work);
-    }
+    in_shares(n, 1, [&](int slot, int begin, int end) {
+        work[slot].resize(static_cast<std::size_t>(size_));
+        for (int s = begin; s < end; ++s) {
+            // from both ends of time towards the middle: nothing of the ends is kept then
+            if (s > 0 && s == n - 1) std::ranges::reverse(own[s]);
+            parts_->stretches[s].analyse(rows, {cuts[s], cuts[s + 1]}, std::move(own[s]), std::move(kept[s]),
+                                         work[slot]);
+        }
+    });
     values_.assign(static_cast<std::size_t>(size_), 0.0);
 }
 
@@ -151,6 +166,16 @@ void StaircaseLU::solve(std::span<const double> b, std::span<double> x) const
     parts_->last.backward(shared_values_.data(), shared_values_.data());
     for (std::size_t i = 0; i < shared_.size(); ++i) x[shared_[i]] = shared_values_[i];
     for_each_item(n_stretches(), 1, [&](int s) { parts_->stretches[s].backward(values_.data(), x.data()); });
+}
+
+void StaircaseLU::subtract_product(std::span<const double> x, std::span<double> y) const
+{
+    const StoredRows& rows = parts_->rows;
+    for_each_item(size_, least_shared_rows, [&](int r) {
+        double sum = 0;
+        for (int k = rows.starts[r]; k < rows.starts[r + 1]; ++k) sum += rows.values[k] * x[rows.columns[k]];
+        y[r] -= sum;
+    });
 }
 
 long long StaircaseLU::factor_entries() const

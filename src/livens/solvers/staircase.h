@@ -31,6 +31,8 @@ public:
     bool factorise(const SparseMatrix& A);
     /// x = A^-1 b; they may be the same.
     void solve(std::span<const double> b, std::span<double> x) const;
+    /// y -= A x with the matrix of the last factorise().
+    void subtract_product(std::span<const double> x, std::span<double> y) const;
     long long factor_entries() const;
 
 private:

@@ -193,10 +193,10 @@ void Stretch::find_runs(int k, const std::uint64_t* bits)
 }
 
 /// What a row takes over of the places of another one's numbers.
-void Stretch::take_bits(const std::uint64_t* bits, int place)
+void Stretch::take_bits(const std::uint64_t* bits, std::pair<int, int> words, int place)
 {
     std::uint64_t* own = front_.bits(place);
-    for (int w = 0; w < front_.n_words(); ++w) {
+    for (int w = words.first; w < words.second; ++w) {
         std::uint64_t fresh = bits[w] & ~own[w];
         own[w] |= bits[w];
         for (; fresh != 0; fresh &= fresh - 1) {
@@ -222,6 +222,9 @@ void Stretch::take_off(int k, int pivot_place)
     const std::vector<NumberRun>& runs = factors_.runs;
     for (std::size_t r = first_run; r < runs.size(); ++r)   // short
         for (int i = 0; i < runs[r].size; ++i) factors_.upper.push_back(values[runs[r].slot + i]);
+    std::pair<int, int> words{0, front_.n_words()};   // with bits
+    while (words.first < words.second && bits[words.first] == 0) ++words.first;
+    while (words.first < words.second && bits[words.second - 1] == 0) --words.second;
     for (const int place : candidates_) {
         if (place == pivot_place) continue;
         double* y = front_.row(place);
@@ -237,7 +240,7 @@ void Stretch::take_off(int k, int pivot_place)
             for (int j = 0; j < size; ++j) to[j] -= factor * u[j];
             u += size;
         }
-        take_bits(bits, place);
+        take_bits(bits, words, place);
     }
     factors_.rows.push_back(row_at_[pivot_place]);
     factors_.diagonal.push_back(pivot);

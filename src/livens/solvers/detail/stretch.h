@@ -114,7 +114,7 @@ private:
     void enter(const StoredRows& rows, int k, std::size_t& next);
     int choose(int k);
     void find_runs(int k, const std::uint64_t* bits);
-    void take_bits(const std::uint64_t* bits, int place);
+    void take_bits(const std::uint64_t* bits, std::pair<int, int> words, int place);
     void take_off(int k, int pivot_place);
     void drop(int place, std::size_t first_run);
     void leave();

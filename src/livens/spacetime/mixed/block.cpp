@@ -44,8 +44,13 @@ void BlockFactors::solve(const SparseMatrix& A, std::span<const double> b, std::
     missed_.resize(b.size());
     correction_.resize(b.size());
     apply_inverse(b, x);
-    A.multiply(x, missed_);
-    for (std::size_t i = 0; i < b.size(); ++i) missed_[i] = b[i] - missed_[i];
+    if (is_general_) {
+        A.multiply(x, missed_);
+        for (std::size_t i = 0; i < b.size(); ++i) missed_[i] = b[i] - missed_[i];
+    } else {
+        std::ranges::copy(b, missed_.begin());
+        along_time_.subtract_product(x, missed_);
+    }
     apply_inverse(missed_, correction_);
     for (std::size_t i = 0; i < b.size(); ++i) x[i] += correction_[i];
 }

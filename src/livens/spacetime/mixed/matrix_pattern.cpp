@@ -5,9 +5,16 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "livens/solvers/crew.h"
 #include "livens/spacetime/mixed/tangent.h"
 
 namespace livens::mixed {
+
+namespace {
+
+constexpr int least_shared_elements = 64;   // that a thread draws out
+
+}   // namespace
 
 void MatrixPattern::collect()
 {
@@ -80,24 +87,27 @@ void MatrixPattern::draw_out(int size, const SparseMatrix& short_J, SparseMatrix
     std::size_t n = short_J.rows.size();
     for (const Cut& cut : cuts_) n += static_cast<std::size_t>(cut.times) * cut.entries;
     J.size = size;
-    J.column_starts.assign(1, 0);
-    J.column_starts.reserve(static_cast<std::size_t>(size) + 1);
+    J.column_starts.assign(static_cast<std::size_t>(size) + 1, 0);
     J.rows.resize(n);
-    int* row = J.rows.data();
-    const auto copy = [&](int first, int last, int shift) {
-        const int begin = starts[first], ahead = static_cast<int>(row - J.rows.data()) - begin;
-        for (int c = first; c < last; ++c) J.column_starts.push_back(starts[c + 1] + ahead);
-        for (int k = begin; k < starts[last]; ++k) *row++ = short_J.rows[k] + shift;
+    // columns first..last - 1 as columns from `to` on, whose entries begin at `begin`
+    const auto copy = [&](int first, int last, int to, int begin, int shift) {
+        const int ahead = begin - starts[first];
+        for (int c = first; c < last; ++c) J.column_starts[to + c - first + 1] = starts[c + 1] + ahead;
+        for (int k = starts[first]; k < starts[last]; ++k) J.rows[k + ahead] = short_J.rows[k] + shift;
     };
-    int first = 0, shift = 0;
+    int first = 0, shift = 0, ahead = 0;
     for (const Cut& cut : cuts_) {
-        copy(first, cut.column, shift);
-        for (int i = 1; i <= cut.times; ++i)
-            copy(cut.column - cut.stride, cut.column, shift + i * cut.stride);
+        copy(first, cut.column, first + shift, starts[first] + ahead, shift);
+        in_shares(cut.times, least_shared_elements, [&](int, int begin, int end) {
+            for (int i = begin; i < end; ++i)
+                copy(cut.column - cut.stride, cut.column, cut.column + shift + i * cut.stride,
+                     starts[cut.column] + ahead + i * cut.entries, shift + (i + 1) * cut.stride);
+        });
         first = cut.column;
         shift += cut.times * cut.stride;
+        ahead += cut.times * cut.entries;
     }
-    copy(first, short_J.size, shift);
+    copy(first, short_J.size, first + shift, starts[first] + ahead, shift);
 }
 
 void MatrixPattern::make(int size, SparseMatrix& J)
