@@ -20,7 +20,7 @@ constexpr int several = -1;               // whose column it is
 constexpr int least_shared_rows = 1000;   // that a thread copies
 
 /// The pattern row by row, and where their entries stand in the matrix.
-void take_rows(const SparseMatrix& A, StoredRows& rows, std::vector<int>& places)
+void take_rows(const SparseMatrix& A, StoredRows& rows, std::vector<int, AsItComes<int>>& places)
 {
     rows.starts.assign(static_cast<std::size_t>(A.size) + 1, 0);
     rows.columns.resize(A.rows.size());
@@ -31,8 +31,9 @@ void take_rows(const SparseMatrix& A, StoredRows& rows, std::vector<int>& places
         for (int c = 0; c < A.size; ++c) {
             const int first = A.column_starts[c], last = A.column_starts[c + 1];
             if (first == last || A.rows[first] >= end || A.rows[last - 1] < begin) continue;
+            const bool is_whole = A.rows[first] >= begin && A.rows[last - 1] < end;
             for (int k = first; k < last; ++k)
-                if (A.rows[k] >= begin && A.rows[k] < end) act(A.rows[k], k, c);
+                if (is_whole || (A.rows[k] >= begin && A.rows[k] < end)) act(A.rows[k], k, c);
         }
     };
     in_shares(A.size, least_shared_rows, [&](int, int begin, int end) {
@@ -52,7 +53,8 @@ void take_rows(const SparseMatrix& A, StoredRows& rows, std::vector<int>& places
 }   // namespace
 
 struct StaircaseLU::Parts {
-    StoredRows rows;   // of the matrix
+    StoredRows rows;                           // of the matrix
+    std::vector<int, AsItComes<int>> places;   // of their entries among its values
     std::vector<Stretch> stretches;
     StoredRows left;   // what is left of them, in shared columns
     Stretch last;
@@ -66,7 +68,7 @@ int StaircaseLU::n_stretches() const { return static_cast<int>(parts_->stretches
 void StaircaseLU::analyse(const SparseMatrix& A, std::span<const int> cuts)
 {
     size_ = A.size;
-    take_rows(A, parts_->rows, places_);
+    take_rows(A, parts_->rows, parts_->places);
     const StoredRows& rows = parts_->rows;
     const int n = std::max(static_cast<int>(cuts.size()) - 1, 0);
     first_behind_ = n > 0 ? cuts.back() : 0;
@@ -113,10 +115,11 @@ void StaircaseLU::analyse(const SparseMatrix& A, std::span<const int> cuts)
 
 bool StaircaseLU::factorise(const SparseMatrix& A)
 {
-    assert(A.size == size_ && A.values.size() == places_.size());
+    assert(A.size == size_ && A.values.size() == parts_->places.size());
     StoredRows& rows = parts_->rows;
     in_shares(size_, least_shared_rows, [&](int, int begin, int end) {
-        for (int k = rows.starts[begin]; k < rows.starts[end]; ++k) rows.values[k] = A.values[places_[k]];
+        for (int k = rows.starts[begin]; k < rows.starts[end]; ++k)
+            rows.values[k] = A.values[parts_->places[k]];
     });
     std::vector<char> is_done(parts_->stretches.size());
     for_each_item(n_stretches(), 1, [&](int s) { is_done[s] = parts_->stretches[s].eliminate(rows); });

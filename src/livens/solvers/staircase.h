@@ -41,7 +41,6 @@ private:
     bool join();
 
     int size_ = 0;
-    std::vector<int> places_;          // of entries, row by row, among the values of the matrix
     std::vector<int> shared_;          // columns that several stretches see
     std::vector<int> column_places_;   // of every column in shared_; -1: it belongs to a stretch
     int first_behind_ = 0;             // row

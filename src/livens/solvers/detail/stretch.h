@@ -4,17 +4,37 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
 namespace livens::inline solvers_internal {
 
+/// Leaves what is new in a vector as it comes: all of it is written before it is read.
+template <class T>
+struct AsItComes : std::allocator<T> {
+    template <class U>
+    struct rebind {
+        using other = AsItComes<U>;
+    };
+    template <class U>
+    void construct(U* at) noexcept
+    {
+        ::new (static_cast<void*>(at)) U;
+    }
+    template <class U, class... Values>
+    void construct(U* at, Values&&... values)
+    {
+        ::new (static_cast<void*>(at)) U(std::forward<Values>(values)...);
+    }
+};
+
 /// Rows of a sparse matrix, columns ascending.
 struct StoredRows {
     std::vector<int> starts;   ///< one more than there are rows
-    std::vector<int> columns;
-    std::vector<double> values;
+    std::vector<int, AsItComes<int>> columns;
+    std::vector<double, AsItComes<double>> values;
 
     int size() const { return static_cast<int>(starts.size()) - 1; }
 };
@@ -70,7 +90,8 @@ struct Multiplier {
 struct StretchPattern {
     int window = 1;   ///< own columns between the first and the last that any row in the front sees, at most
     std::vector<int> own, kept;
-    std::vector<int> rows, begins, places;
+    std::vector<int> rows, begins;
+    std::vector<int, AsItComes<int>> places;
     int first_entry = 0;
 };
 
