@@ -52,7 +52,7 @@ void BlockFactors::solve(const SparseMatrix& A, std::span<const double> b, std::
         along_time_.subtract_product(x, missed_);
     }
     apply_inverse(missed_, correction_);
-    for (std::size_t i = 0; i < b.size(); ++i) x[i] += correction_[i];
+    for_each_item(static_cast<int>(b.size()), least_shared_columns, [&](int i) { x[i] += correction_[i]; });
 }
 
 Block::Block(Equations equations, SparseBackend backend, Border* border)
@@ -117,9 +117,10 @@ void Block::solve(std::span<double> dx)
         for (const double missed : border_->conditions().missed()) rows.push_back(-missed);
     work_.resize(rows.size());
     increment_.resize(rows.size());
-    for (std::size_t i = 0; i < rows.size(); ++i) work_[i] = -rows[i] * scaled_.rows[i];
+    const int n_rows = static_cast<int>(rows.size());
+    for_each_item(n_rows, least_shared_columns, [&](int i) { work_[i] = -rows[i] * scaled_.rows[i]; });
     factors_.solve(scaled_.all, work_, increment_);
-    for (std::size_t i = 0; i < increment_.size(); ++i) increment_[i] *= scaled_.columns[i];
+    for_each_item(n_rows, least_shared_columns, [&](int i) { increment_[i] *= scaled_.columns[i]; });
     const std::size_t n = residual_.size();
     std::copy_n(increment_.begin(), n, dx.begin());
     if (border_ != nullptr) border_->conditions().to_momenta(increment_.data() + n, dx.data() + n);

@@ -28,32 +28,37 @@ std::string Equations::residual(const Fields& fields, std::vector<double>& r)
     const BlockFunctions& functions = space_.functions;
     const Coordinates& m = space_.coordinates;
     const Numbering& numbering = space_.numbering;
-    dP_.assign(static_cast<std::size_t>(m.size) * functions.space().size(), 0.0);
-    dX_.assign(dP_.size(), 0.0);
-    dlambda_.assign(static_cast<std::size_t>(m.n_rows()) * functions.multipliers().size(), 0.0);
+    dP_.resize(static_cast<std::size_t>(m.size) * functions.space().size());
+    dX_.resize(dP_.size());
+    dlambda_.resize(static_cast<std::size_t>(m.n_rows()) * functions.multipliers().size());
+    r.resize(static_cast<std::size_t>(space_.size()));   // of which each is of a function
     workspaces_.resize(static_cast<std::size_t>(Crew::size()));
     for (Workspace& at : workspaces_) at.bad.clear();
+    const auto take = [&r](int to, const std::vector<double>& raw, int A, int count) {
+        if (to >= 0) std::copy_n(raw.data() + static_cast<std::size_t>(A) * count, count, r.data() + to);
+    };
     // A thread makes all elements of its functions: those that it shares with others twice, so that sums at
     // a function are made in one order, whoever makes them.
     in_shares(functions.space().size(), least_shared_functions, [&](int slot, int begin, int end) {
         Workspace& at = workspaces_[slot];
         at.begin = begin;
         at.end = end;
+        const int multipliers_end = std::min(end, functions.multipliers().size());
+        std::fill(dP_.begin() + begin * m.size, dP_.begin() + end * m.size, 0.0);
+        std::fill(dX_.begin() + begin * m.size, dX_.begin() + end * m.size, 0.0);
+        if (begin < multipliers_end)
+            std::fill(dlambda_.begin() + begin * m.n_rows(), dlambda_.begin() + multipliers_end * m.n_rows(),
+                      0.0);
         add_elements(fields, at);
+        for (int A = begin; A < end; ++A) {
+            take(numbering.row_dP(A), dP_, A, m.size);
+            take(numbering.row_dX(A), dX_, A, m.size);
+            if (A < multipliers_end) take(numbering.row_dlambda(A), dlambda_, A, m.n_rows());
+        }
     });
     std::string bad;
     for (Workspace& at : workspaces_)
         if (!at.bad.empty()) bad = std::move(at.bad);
-    r.assign(static_cast<std::size_t>(space_.size()), 0.0);
-    const auto take = [&r](int to, const std::vector<double>& raw, int A, int count) {
-        if (to >= 0) std::copy_n(raw.data() + static_cast<std::size_t>(A) * count, count, r.data() + to);
-    };
-    for (int A = 0; A < functions.space().size(); ++A) {
-        take(numbering.row_dP(A), dP_, A, m.size);
-        take(numbering.row_dX(A), dX_, A, m.size);
-    }
-    for (int A = 0; A < functions.multipliers().size(); ++A)
-        take(numbering.row_dlambda(A), dlambda_, A, m.n_rows());
     add_boundary(fields, r);
     return bad;
 }

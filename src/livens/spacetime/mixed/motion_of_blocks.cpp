@@ -71,15 +71,17 @@ void MotionOfBlocks::add(int first, const Equations& equations, const Fields& fi
         to.resize(to.size() + coordinates_.n_X());
         coordinates_.spread(numbers.data(), to.data() + to.size() - coordinates_.n_X());
     };
+    const std::vector<double> nodes = nodes_of(space.degree()),
+                              multiplier_nodes = nodes_of(fields_of.functions.multipliers().degree());
     for (int e = 0; e < block.n_elements; ++e) {
-        for (const double s : nodes_of(space.degree())) {
+        for (const double s : nodes) {
             fields_of.evaluate_X(fields, e, s, numbers.data());
             append_columns(block.X);
             fields_of.evaluate_P(fields, e, s, numbers.data());
             append_columns(block.P);
             if (space.is_rational()) block.denominators.push_back(space.denominator(e, s));
         }
-        for (const double s : nodes_of(fields_of.functions.multipliers().degree())) {
+        for (const double s : multiplier_nodes) {
             fields_of.evaluate_multipliers(fields, e, s, lambda.data());
             append_multipliers(lambda, block);
         }
