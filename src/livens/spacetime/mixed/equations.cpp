@@ -13,12 +13,6 @@
 
 namespace livens::mixed {
 
-namespace {
-
-constexpr int least_shared_functions = 16;   // that a thread takes, where there are several
-
-}   // namespace
-
 Equations::Equations(FieldSpace space, EndMomentum at_start, EndMomentum at_end)
     : space_(std::move(space)), at_start_(std::move(at_start)), at_end_(std::move(at_end))
 {}

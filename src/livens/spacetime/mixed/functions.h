@@ -9,6 +9,8 @@
 
 namespace livens::mixed {
 
+inline constexpr int least_shared_functions = 16;   ///< that a thread takes, where there are several
+
 /// The functions M_A of X and P and L_A of the multipliers, with what depends on them alone.
 ///
 /// Multipliers are tested with L_A. What they are made of is the same, but that the function at the start of

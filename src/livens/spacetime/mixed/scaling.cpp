@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/solvers/crew.h"
+
 namespace livens::mixed {
 
 void Scaling::set(const Fields& fields)
@@ -50,15 +52,29 @@ void Scaling::set(const Fields& fields)
         }
 }
 
+/// Of all that look_at(A, look) shows; nan, once seen, stays.
+template <class LookAt>
+double Scaling::largest_of_functions(const LookAt& look_at) const
+{
+    const auto larger = [](double size, double value) {
+        return !(value <= size) && !std::isnan(size) ? value : size;
+    };
+    std::vector<double> sizes(static_cast<std::size_t>(Crew::size()), 0.0);
+    in_shares(space_.numbering.n_functions(), least_shared_functions, [&](int slot, int begin, int end) {
+        double size = 0;
+        for (int A = begin; A < end; ++A) look_at(A, [&](double value) { size = larger(size, value); });
+        sizes[static_cast<std::size_t>(slot)] = size;
+    });
+    double size = 0;
+    for (const double of_thread : sizes) size = larger(size, of_thread);
+    return size;
+}
+
 double Scaling::size_of(std::span<const double> increment) const
 {
     const Coordinates& m = space_.coordinates;
     const double length = m.tables.length;
-    double size = 0;
-    const auto look = [&size](double value) {   // nan, once seen, stays
-        if (!(value <= size) && !std::isnan(size)) size = value;
-    };
-    for (int A = 0; A < space_.numbering.n_functions(); ++A) {
+    return largest_of_functions([&](int A, auto look) {
         const int X = space_.numbering.X(A), P = space_.numbering.P(A);
         for (int b = 0; b < m.n_bodies(); ++b)
             for (int c = 0; c < m.n_numbers(b); ++c) {
@@ -68,8 +84,7 @@ double Scaling::size_of(std::span<const double> increment) const
                 if (P >= 0)
                     look(std::abs(increment[P + i]) * space_.functions.length(A) / (root * root * unit));
             }
-    }
-    return size;
+    });
 }
 
 Worst Scaling::worst(const std::vector<double>& r) const
@@ -111,10 +126,11 @@ double Scaling::largest(const Fields& fields) const
 {
     const Coordinates& m = space_.coordinates;
     const Numbering& n = space_.numbering;
-    double result = 0;
-    for (int A = 0; A < n.n_functions(); ++A)
+    double result = largest_of_functions([&](int A, auto look) {
         for (int i = 0; i < m.size; ++i)
-            result = std::max(result, std::abs(fields.P[A * m.size + i]) / m.root_masses[i]);
+            if (const double size = std::abs(fields.P[A * m.size + i]) / m.root_masses[i]; !std::isnan(size))
+                look(size);
+    });
     for (int A = 0; A < n.n_multiplier_functions(); ++A)
         for (int k = 0; n.lambda(A) >= 0 && k < m.n_rows(); ++k)
             result =

@@ -37,6 +37,9 @@ public:
     double largest(const Fields& fields) const;
 
 private:
+    template <class LookAt>
+    double largest_of_functions(const LookAt& look_at) const;
+
     const FieldSpace& space_;
     std::vector<double> rows_, columns_;
 };

@@ -11,12 +11,6 @@
 
 namespace livens::mixed {
 
-namespace {
-
-constexpr int least_shared_functions = 16;   // that a thread takes, where there are several
-
-}   // namespace
-
 Tangent::Tangent(const Equations& equations)
     : equations_(equations), space_(equations.space()), sums_(1, ElementSums(equations.space()))
 {}

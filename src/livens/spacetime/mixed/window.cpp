@@ -31,6 +31,20 @@ int exact_points(const Mixed& method)
     return (3 * p + 2) / 2 + (basis_of(method).has_weights ? p : 0);
 }
 
+/// Functions are one at their own interpolation points, and zero at the others.
+bool are_own_at_points(const TimeSpace& space)
+{
+    const std::vector<double> points = space.interpolation_points();
+    std::vector<double> values(static_cast<std::size_t>(space.degree() + 1)), rates(values);
+    for (int i = 0; i < space.size(); ++i) {
+        const TimeSpace::Place place = space.place(points[i]);
+        space.evaluate(place.element, place.s, values, rates);
+        for (int a = 0; a <= space.degree(); ++a)
+            if (values[a] != (space.first(place.element) + a == i ? 1 : 0)) return false;
+    }
+    return true;
+}
+
 /// Coefficients whose function takes the columns' values at the interpolation points, in place.
 void interpolate(const TimeSpace& space, int n_values, std::vector<double>& columns)
 {
@@ -44,10 +58,6 @@ void interpolate(const TimeSpace& space, int n_values, std::vector<double>& colu
         for (int a = 0; a < local; ++a)
             if (values[a] != 0) by_column[space.first(place.element) + a].push_back({i, values[a]});
     }
-    bool is_identity = true;   // functions are one at their own points
-    for (int i = 0; i < n; ++i)
-        is_identity = is_identity && by_column[i].size() == 1 && by_column[i][0] == std::pair(i, 1.0);
-    if (is_identity) return;
     const SparseMatrix A = sparse_from_columns(by_column);
     SparseLU lu(SparseBackend::eigen);
     lu.analyse(A);
@@ -175,10 +185,11 @@ void MixedWindow::take_guess(const Guess& guess)
     }
     for_each_item(static_cast<int>(states.size()), least_shared_states,
                   [&](int A) { put_multipliers(A, states[A]); });
-    interpolate(space, n, fields.x);
-    interpolate(space, n, fields.P);
+    const bool is_done = are_own_at_points(space);
+    if (!is_done) interpolate(space, n, fields.x);
+    if (!is_done) interpolate(space, n, fields.P);
     if (is_equal) {
-        interpolate(space, n_rows, fields.lambda);
+        if (!is_done) interpolate(space, n_rows, fields.lambda);
         const std::vector<double> whole = fields.lambda;   // as if nothing was torn
         for (int e = 0; e < space.n_elements(); ++e)
             std::copy_n(whole.begin() + static_cast<std::ptrdiff_t>(space.first(e)) * n_rows,
