@@ -33,7 +33,7 @@ void MatrixPattern::end_element()
 
 void MatrixPattern::repeat(int times, int stride, int column)
 {
-    const Element last = elements_.back();
+    const PlacedElement last = elements_.back();
     for (int i = 1; i <= times; ++i) elements_.push_back({last.begin, last.n_cuts, i});
     cuts_.push_back({column - shift_, times, stride});
     left_out_ += times * stride;
@@ -72,12 +72,12 @@ void MatrixPattern::sort(int size, SparseMatrix& short_J)
 void MatrixPattern::take_offsets()
 {
     std::vector<int> before(1, 0);   // values that are left out before each cut
-    for (const Cut& cut : cuts_) before.push_back(before.back() + cut.times * cut.entries);
-    for (Element& element : elements_)
+    for (const PatternCut& cut : cuts_) before.push_back(before.back() + cut.times * cut.entries);
+    for (PlacedElement& element : elements_)
         element.offset =
             before[element.n_cuts] + (element.copy > 0 ? element.copy * cuts_[element.n_cuts].entries : 0);
     for (std::size_t k = first_of_ends_; k < places_.size(); ++k)
-        for (const Cut& cut : cuts_)
+        for (const PatternCut& cut : cuts_)
             if (places_[k].second >= cut.column) slots_[k] += cut.times * cut.entries;
 }
 
@@ -85,7 +85,7 @@ void MatrixPattern::draw_out(int size, const SparseMatrix& short_J, SparseMatrix
 {
     const std::vector<int>& starts = short_J.column_starts;
     std::size_t n = short_J.rows.size();
-    for (const Cut& cut : cuts_) n += static_cast<std::size_t>(cut.times) * cut.entries;
+    for (const PatternCut& cut : cuts_) n += static_cast<std::size_t>(cut.times) * cut.entries;
     J.size = size;
     J.column_starts.assign(static_cast<std::size_t>(size) + 1, 0);
     J.rows.resize(n);
@@ -96,7 +96,7 @@ void MatrixPattern::draw_out(int size, const SparseMatrix& short_J, SparseMatrix
         for (int k = starts[first]; k < starts[last]; ++k) J.rows[k + ahead] = short_J.rows[k] + shift;
     };
     int first = 0, shift = 0, ahead = 0;
-    for (const Cut& cut : cuts_) {
+    for (const PatternCut& cut : cuts_) {
         copy(first, cut.column, first + shift, starts[first] + ahead, shift);
         in_shares(cut.times, least_shared_elements, [&](int, int begin, int end) {
             for (int i = begin; i < end; ++i)
@@ -114,7 +114,7 @@ void MatrixPattern::make(int size, SparseMatrix& J)
 {
     SparseMatrix short_J;
     sort(size - left_out_, short_J);
-    for (Cut& cut : cuts_)
+    for (PatternCut& cut : cuts_)
         cut.entries = short_J.column_starts[cut.column] - short_J.column_starts[cut.column - cut.stride];
     take_offsets();
     draw_out(size, short_J, J);

@@ -11,6 +11,19 @@
 
 namespace livens::mixed {
 
+/// An element whose places are taken down, or follow from those of another one.
+struct PlacedElement {
+    std::size_t begin;   ///< of its places, or of those of the one that it is like
+    int n_cuts, copy;    ///< before it, and how many elements after that one
+    int offset = 0;
+};
+
+/// Behind the columns before `column` as many as an element has are left out, `times`.
+struct PatternCut {
+    int column, times, stride;
+    int entries = 0;   ///< of the columns of an element
+};
+
 /// Entries that are made again and again in one order: their places are found once. Of many elements in a row
 /// that are alike, each `stride` rows and columns after the one before, some are taken down, and the others
 /// follow from them.
@@ -35,29 +48,19 @@ public:
     void make(int size, SparseMatrix& J);
     Slots of_element(int e) const
     {
-        const Element& element = elements_[static_cast<std::size_t>(e)];
+        const PlacedElement& element = elements_[static_cast<std::size_t>(e)];
         return {slots_.data() + element.begin, element.offset};
     }
     Slots of_ends() const { return {slots_.data() + first_of_ends_, 0}; }
 
 private:
-    struct Element {
-        std::size_t begin;   // of its places, or of those of the one that it is like
-        int n_cuts, copy;    // before it, and how many elements after that one
-        int offset = 0;
-    };
-    /// Behind the columns before `column` as many as an element has are left out, `times`.
-    struct Cut {
-        int column, times, stride;
-        int entries = 0;   // of the columns of an element
-    };
     void sort(int size, SparseMatrix& short_J);
     void take_offsets();
     void draw_out(int size, const SparseMatrix& short_J, SparseMatrix& J) const;
 
     std::vector<std::pair<int, int>> places_;   // as if what is left out was not there
-    std::vector<Element> elements_;
-    std::vector<Cut> cuts_;
+    std::vector<PlacedElement> elements_;
+    std::vector<PatternCut> cuts_;
     int shift_ = 0, left_out_ = 0;   // numbers that are left out before what is taken down, and in all
     std::size_t first_of_element_ = 0, first_of_ends_ = 0;
     std::vector<int> slots_;
