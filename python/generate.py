@@ -9,7 +9,7 @@ import sys
 import textwrap
 
 NONE, FLAG, TRUTH, INTEGER, NUMBER, TEXT, CHOICE, NAMES, NAMED_TEXTS, ROW, ROWS, TABLE, TABLES = range(13)
-FACTORS = 16
+FACTORS, CONDITION = 16, 17
 HEAD = '''# SPDX-License-Identifier: BSD-3-Clause
 """Generated from the schema of scenarios; see python/generate.py."""
 from __future__ import annotations
@@ -37,11 +37,11 @@ MESH_FILE = ("A path from the model's folder on, or any other path: the file is 
              "installed. Mesh coordinates are body coordinates.")
 WRITTEN = {FLAG: "bool", TRUTH: "bool", INTEGER: "int", NUMBER: "Number", TEXT: "str", NAMES: "Sequence[str | Entry]",
            NAMED_TEXTS: "Mapping[str, str]", ROW: "Vector", ROWS: "Matrix", TABLE: "Mapping[str, Any]",
-           TABLES: "Sequence[Mapping[str, Any]]", FACTORS: "Mapping[str, Number]"}
+           TABLES: "Sequence[Mapping[str, Any]]", FACTORS: "Mapping[str, Number]", CONDITION: "str"}
 OF_MESHES = ("unit", "scale", "turn", "densities")
 OF_SOLIDS = ("density_field",)
 READ = {FLAG: "bool", TRUTH: "bool", INTEGER: "int", NUMBER: "float", TEXT: "str", ROW: "Floats", ROWS: "Floats",
-        CHOICE: "str"}
+        CHOICE: "str", CONDITION: "str"}
 REFERENCES = {"body": "str | Entry", "joint": "str | Entry", "load": "str | Entry"}
 NAMED = ("point", "points", "at")   # what may be the name of a point
 PAIRS = ("between", "joints")
@@ -165,10 +165,10 @@ class Writer:
         return [key for key in table["keys"] + own if key["name"] != table["chooser"] and key["form"] != NONE]
 
     def handles(self):
-        for kind in ("body", "point", "joint", "drive", "load", "sensor"):
+        for kind in ("body", "point", "joint", "drive", "load", "sensor", "event"):
             table = self.children[kind]
             self.line(f"\n\nclass {kind.capitalize()}(Entry):")
-            self.line(wrapped(f'"""A {kind} of a model. {table["doc"]}', "    "))
+            self.line(wrapped(f'"""{"An" if kind == "event" else "A"} {kind} of a model. {table["doc"]}', "    "))
             self.line('\n    Its keys are attributes; see :class:`livens.Section`.\n    """\n')
             self.line("    __slots__ = ()")
             seen = {"name"}
@@ -255,6 +255,7 @@ class Writer:
         self.line("        raise NotImplementedError")
         self.adder("body", self.children["body"], "", "")
         self.adder("point", self.children["point"], "", "a place of a body with a name")
+        self.adder("event", self.children["event"], "", "a condition of the motion that is reported, or ends it")
         for kind in ("joint", "drive", "load", "sensor"):
             table = self.children[kind]
             for k in table["kinds"]:

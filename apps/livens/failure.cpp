@@ -14,6 +14,7 @@
 #include "console.h"
 #include "livens/base/error.h"
 #include "livens/io/results.h"
+#include "livens/io/solve_scenario.h"
 #include "terminal.h"
 
 namespace livens::program {
@@ -298,6 +299,7 @@ Scenario scenario_of_run(const Run& run, const std::string& run_file)
         throw Failure{exit_input_output, "the run's scenario cannot be read by this version",
                       std::move(result.diagnostics), std::move(result.text)};
     try {
+        take_events(run, *result.scenario);
         check_model(result.scenario->model, run);
     } catch (const IoError& error) {
         throw IoError("cannot read '" + run_file + "': " + error.what(), error.code());

@@ -32,6 +32,7 @@ std::string json_of(const RunHead& head)
     json.member("start", head.start).member("end", head.end);
     write_figures(json, run);
     write_found_errors(json, run);
+    write_events(json, run);
     json.member("output_times", head.n_output_times);
     names(json, "bodies", run.body_names);
     names(json, "joints", run.joint_names);

@@ -171,6 +171,7 @@ std::string json_of(const Solved& solved, const Places& p, const std::vector<Dia
     json.member("start", run.motion.start()).member("end", run.motion.end());
     if (solved.found != nullptr) write_found(json, *solved.found);
     write_found_errors(json, run);
+    write_events(json, run);
     json.member("output", p.output.string());
     json.key("csv");
     if (p.csv.empty())

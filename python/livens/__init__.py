@@ -25,7 +25,7 @@ from ._errors import (Diagnostic, InputError, ModelWarning, Place, ResultFileErr
 from ._explain import explain
 from ._export import Comparison, compare
 from ._generated import *   # noqa: F403  the shapes and methods that the schema has, see __all__ there
-from ._generated import Body, Drive, Joint, Load, MethodOptions, Point, Sensor
+from ._generated import Body, Drive, Event, Joint, Load, MethodOptions, Point, Sensor
 from ._functions import BodyState
 from ._import import from_urdf
 from ._mujoco import from_mjcf
@@ -36,7 +36,7 @@ from ._parameters import Parameters
 from ._parts import BodySeries, JointSeries, LoadSeries, Parts, PointSeries, ReadingSeries, SensorSeries
 from ._rest import (Equilibrium, EquilibriumError, Linearisation, ModeBody, ModeJoint, Modes, RestBody, RestJoint,
                     StateMatrices)
-from ._results import Solution, load_solution
+from ._results import Solution, SolvedEvent, load_solution
 from ._series import Series
 from ._shown import Extremes, Peak
 from ._solve import solve, solve_many
@@ -44,12 +44,12 @@ from ._state import Coordinates, MechanismState, PlacedBody, PlacedJoint, Placed
 from ._values import Condition, Method, Shape, momenta, positions, state, table, unknown, visual
 
 __all__ = [
-    "Added", "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Coordinates", "Diagnostic", "Drive", "Entry", "Equilibrium",
+    "Added", "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Coordinates", "Diagnostic", "Drive", "Entry", "Equilibrium", "Event",
     "EquilibriumError", "Extremes", "InputError", "Joint", "JointSeries", "Linearisation", "Load", "LoadSeries", "MechanismState", "Method",
     "MethodOptions", "ModeBody", "ModeJoint", "Model", "ModelWarning", "Modes", "Names", "Parameters", "Parts", "Peak",
     "Place", "PlacedBody", "PlacedJoint", "PlacedPoint", "Point", "PointSeries",
     "ReadingSeries", "RestBody", "RestJoint", "ResultFileError", "Section", "Sensor", "SensorSeries", "Series",
-    "Shape", "SlowWarning", "Solution", "SolveError", "SolveWarning", "StateMatrices", "__version__", "compare",
+    "Shape", "SlowWarning", "Solution", "SolveError", "SolveWarning", "SolvedEvent", "StateMatrices", "__version__", "compare",
     "explain", "from_mjcf", "from_urdf", "load", "load_solution", "momenta", "positions", "reach", "solve", "solve_many", "state",
     "table", "unknown", "visual",
 ]

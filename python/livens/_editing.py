@@ -12,7 +12,7 @@ from . import _core
 from ._entries import Entry, Names, RootSection, Section, default_name, unknown_name
 from ._errors import Diagnostic, InputError, ModelWarning, fault, raised, stack_level, user_place
 from ._functions import adapted
-from ._generated import Adders, Body, Drive, Joint, Load, Point, Sensor
+from ._generated import Adders, Body, Drive, Event, Joint, Load, Point, Sensor
 from ._included import has_point
 from ._places import arranged, diagnostic_of, faults_in, key_below, of_table, path_at, path_of, store, words_in
 from ._rotations import oriented, with_rotation
@@ -20,7 +20,8 @@ from ._state import Coordinates
 from ._tree import KINDS, Table, diagnostics_of_text, frozen, plain, schema, toml
 from ._values import Shape
 
-_TYPES: dict[str, type[Entry]] = {"body": Body, "point": Point, "joint": Joint, "drive": Drive, "load": Load, "sensor": Sensor}
+_TYPES: dict[str, type[Entry]] = {"body": Body, "point": Point, "joint": Joint, "drive": Drive, "load": Load, "sensor": Sensor,
+                                "event": Event}
 _MISSING = object()
 _INSTEAD = {   # keys that say the same in other ways: assigning one takes the others away
     "body": (("mass", "density"), ("directors", "quaternion", "rotation_vector"),

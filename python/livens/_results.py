@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import warnings
+from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +25,15 @@ if TYPE_CHECKING:
     from ._model import Model
 
 _LARGEST_INLINE = 4_000_000   # characters of a page inside a notebook
+
+
+@dataclass(frozen=True)
+class SolvedEvent:
+    """A condition that became true: its name, the instant (s), and the estimated error of that (s; nan: not known)."""
+
+    name: str
+    t: float
+    error: float
 
 
 class Solution(Series):
@@ -177,6 +187,16 @@ class Solution(Series):
     def unknown_errors(self) -> dict[str, float]:
         """Estimated errors of what was found of unknown numbers, by their names; nan: not known."""
         return dict(self._result.unknown_errors)
+
+    @property
+    def events(self) -> list[SolvedEvent]:
+        """What the motion decided, in its order: events of the model, ``from`` and ``until`` that are conditions."""
+        return [SolvedEvent(*one) for one in self._result.events]
+
+    @property
+    def stopped_by(self) -> str | None:
+        """Name of the event that ended the motion; ``None``: it went on to the end of time."""
+        return self._result.stopped_by or None
 
     @property
     def n_elements(self) -> int:

@@ -39,7 +39,7 @@ _SPINS = ("angular_velocity", "angular_velocity_body")
 
 
 def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, elements: int | None = None,
-          output: Number | Vector | None = None, breaks: Literal["from_loads", "ignore"] | None = None,
+          until: str | None = None, output: Number | Vector | None = None, breaks: Literal["from_loads", "ignore"] | None = None,
           method: Method | str | None = None, start: End = None, end: End = None, periodic: bool | Mapping[str, Any] | None = None,
           guess: Solution | None = None, progress: ProgressArgument = False, strict: bool = False, **options: Unpack[MethodOptions]) -> Solution:
     """Solves the motion of a model.
@@ -53,6 +53,7 @@ def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, el
         accuracy: Permitted error of positions, in model lengths, of orientations, in rad, and of unknown numbers,
             by their size. The elements, and the degree unless given, follow from it. Default: 1e-6.
         elements: Number of time elements of equal length, instead of ``accuracy``.
+        until: A condition that ends the motion earlier, ``"door.angle > 60 deg"``; see :attr:`Solution.stopped_by`.
         output: Interval between output times, or an ascending list of them, s; they become element ends.
         breaks: Whether elements end where loads jump (``"from_loads"``, default) or not (``"ignore"``).
         method: ``lv.Lobatto(7)``, ``lv.Radau()``, ``lv.Mixed(..)``, .., or a word: ``"radau"``.
@@ -90,7 +91,7 @@ def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, el
         raise TypeError(f"solve() takes a livens.Model first, not {type(model).__name__}")
     if not (guess is None or isinstance(guess, Solution)):
         raise TypeError(f"a guess is a livens.Solution, not {type(guess).__name__}; lv.load_solution() reads one from a file")
-    of_time = dict(accuracy=accuracy, elements=elements, output=output, breaks=breaks, periodic=periodic)
+    of_time = dict(accuracy=accuracy, elements=elements, until=until, output=output, breaks=breaks, periodic=periodic)
     overrides = _overrides(model, time, of_time, method, options, start, end)
     scenario = model._scenario(overrides)
     shown = _Progress(progress)
@@ -317,7 +318,7 @@ def _method(model: Model, method: Method | str | None, options: Mapping[str, Any
     for name, value in options.items():
         if name not in known or name == "family":
             names = [n for n in known if n != "family"]
-            of_solve = ["time", "accuracy", "elements", "output", "breaks", "method", "start", "end", "periodic", "guess", "progress",
+            of_solve = ["time", "accuracy", "elements", "until", "output", "breaks", "method", "start", "end", "periodic", "guess", "progress",
                         "strict"]
             raise fault("unknown-key", f"solve() has no keyword '{name}'", name,
                         of_keyword(name) or _core.suggestion(name, names + of_solve)

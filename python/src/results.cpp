@@ -4,12 +4,14 @@
 #include <filesystem>
 #include <span>
 #include <system_error>
+#include <tuple>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include "livens/io/exports.h"
@@ -17,6 +19,7 @@
 #include "livens/io/results/figures.h"
 #include "livens/io/results/layout.h"
 #include "livens/io/shown_unit.h"
+#include "livens/io/solve_scenario.h"
 #include "livens/io/verdict_words.h"
 #include "livens/solvers/patience.h"
 #include "result.h"
@@ -158,6 +161,7 @@ Result with_scenario(Run run, const std::string& name)
         throw IoError("the scenario in '" + name + "' cannot be read by this version of livens: " +
                           (read.diagnostics.empty() ? "" : read.diagnostics.front().message),
                       "io-damaged");
+    take_events(run, *read.scenario);
     check_model(read.scenario->model, run);
     Method method = read.scenario->method;
     return {std::make_shared<Scenario>(std::move(*read.scenario)), std::move(run), std::move(method)};
@@ -318,6 +322,26 @@ std::map<std::string, double> unknown_errors(const Result& r)
     return all;
 }
 
+std::vector<std::tuple<std::string, double, double>> events(const Result& r)
+{
+    std::vector<std::tuple<std::string, double, double>> all;
+    const RunEvents& events = r.run.events;
+    for (std::size_t k = 0; k < events.names.size(); ++k)
+        all.emplace_back(events.names[k], events.times[k], events.errors[k]);
+    return all;
+}
+
+/// The event that ended the motion; empty: none.
+std::string stopped_by(const Result& r)
+{
+    if (r.run.events.names.empty() || r.run.events.times.back() < r.run.motion.end()) return "";
+    for (const Event& event : r.scenario->model.events())
+        if (event.name == r.run.events.names.back() &&
+            event.action.does == EventAction::Does::end_motion)
+            return event.name;
+    return "";
+}
+
 /// What belongs to no result, or makes one.
 void add_functions(nb::module_& m)
 {
@@ -369,6 +393,8 @@ void add_results(nb::module_& m)
         .def_prop_ro("version", [](const Result& r) { return r.run.version; })
         .def_prop_ro("scenario_text", [](const Result& r) { return r.run.scenario_text; })
         .def_prop_ro("unknown_errors", &unknown_errors)
+        .def_prop_ro("events", &events)
+        .def_prop_ro("stopped_by", &stopped_by)
         .def_prop_ro("resolved", [](const Result& r) { return r.run.resolved; })
         .def_prop_ro("solve_seconds", [](const Result& r) { return r.solve_seconds; })
         .def_prop_ro("estimate_seconds", [](const Result& r) { return r.estimate_seconds; })

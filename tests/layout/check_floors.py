@@ -40,7 +40,7 @@ PARTS = {
     "dynamics": ["rows", "lanes", "instant", "start", "coordinates"],
     "spacetime": ["march", "elements", "nodal", "mixed", "accuracy"],
     "io": ["results", "exports", "report", "scenario", "import"],
-    "io/scenario": ["text", "schema", "bodies", "joints", "loads", "run"],
+    "io/scenario": ["text", "schema", "bodies", "joints", "loads", "events", "run"],
 }
 # Folders that other rooms do not see into, but for what is named.
 INSIDES = {"detail", "scenario", "import", "march", "elements", "nodal", "mixed", "accuracy"}

@@ -8,26 +8,13 @@
 #include <optional>
 
 #include "livens/diagnostics/sample.h"
-#include "livens/dynamics/instant/instant.h"
-#include "livens/dynamics/rows/rank.h"
-#include "livens/dynamics/rows/rows.h"
+#include "livens/dynamics/instant/settled_instant.h"
 #include "livens/multibody/body.h"
 #include "livens/multibody/rotors.h"
 
 namespace livens {
 
 namespace {
-
-/// Independent rows where most are: where joints lose rank nothing tells which are independent elsewhere.
-std::vector<int> most_rows(const Model& acting, std::span<const State> places)
-{
-    std::vector<int> most;
-    for (const State& state : places) {
-        RowRank rank = row_rank(frozen(acting, {state.t}), state.X, all_rows(acting));
-        if (rank.independent.size() > most.size()) most = std::move(rank.independent);
-    }
-    return most;
-}
 
 std::optional<WithRotors> rotors_of_acting(const Model& model)
 {
@@ -40,81 +27,36 @@ std::optional<WithRotors> rotors_of_acting(const Model& model)
 struct Accelerations::Phase {
     Phase(const Model& all, double t, std::span<const State> places)
         : acting(acting_at(all, t)), rotors(rotors_of_acting(acting.model)),
-          tables(whole(), most_rows(whole(), with_rotors(places))), instant(tables)
-    {
-        solved.resize(tables);
-    }
+          instant(whole(), most_rows(whole(), with_rotors(places)))
+    {}
 
-    [[gnu::visibility("hidden")]] bool settle(const State& state);
-    [[gnu::visibility("hidden")]] bool accelerate(const State& state, const std::vector<double>& angles,
-                                                  Side side);
+    bool settle(const State& state) { return instant.settle(with_rotors(state)); }
+    bool accelerate(const State& state, const std::vector<double>& angles, Side side)
+    {
+        return instant.accelerate(with_rotors(state), angles, side);
+    }
 
     /// Rotors stand behind bodies and rows of the model.
     const Model& whole() const { return rotors ? rotors->model() : acting.model; }
+    State with_rotors(const State& state) const
+    {
+        const bool lacks_them = rotors && state.X.size() == static_cast<std::size_t>(rotors->n_bodies());
+        return lacks_them ? rotors->with(state) : state;
+    }
     std::vector<State> with_rotors(std::span<const State> places) const
     {
-        std::vector<State> all(places.begin(), places.end());
-        for (State& place : all)
-            if (rotors) place = rotors->with(place);
+        std::vector<State> all;
+        for (const State& place : places) all.push_back(with_rotors(place));
         return all;
     }
 
     ActingModel acting;
     std::optional<WithRotors> rotors;
-    ModelTables tables;
-    InstantSystem instant;
-    InstantState solved;
-
-    // What is there already, as most who ask for one thing of a state ask for another.
-    State settled;
-    bool is_held = false;
-    std::optional<Side> accelerated;
+    SettledInstant instant;
 };
 
-/// The state put onto the joints. Between nodes directors are rigid, joints closed, and rates rigid motions
-/// that joints allow, to the order of the interpolation only. False: joints lose rank.
-bool Accelerations::Phase::settle(const State& state)
-{
-    if (rotors && state.X.size() == static_cast<std::size_t>(rotors->n_bodies()))
-        return settle(rotors->with(state));
-    if (settled.t == state.t && settled.X == state.X && settled.V == state.V) return is_held;
-    settled = state;
-    accelerated.reset();
-    is_held = false;
-    solved.t = state.t;
-    for (int b = 0; b < tables.n_bodies(); ++b) {
-        const auto& body = tables.bodies[b];
-        Matrix34 X = state.X[b];
-        if (body.dofs == 6) X = configuration(X.column(0), project_directors(directors(X)));
-        std::copy_n(X.a, 12, solved.X.begin() + 12 * static_cast<std::ptrdiff_t>(b));
-        const Vector3 w = body.dofs == 6 ? angular_velocity(X, state.V[b]) : Vector3{};
-        for (int i = 0; i < body.dofs; ++i)
-            solved.velocity[body.first + i] = i < 3 ? state.V[b](i, 0) : w[i - 3];
-    }
-    if (!instant.prepare(solved, std::vector<int>(solved.held.rows))) return false;
-    constexpr double lost = 1e-4;   // docs/theory.md, "Singular positions"
-    const auto is_lost = [&] { return tables.rank > 0 && solved.held.smallest_pivot < lost; };
-    if (is_lost()) return false;
-    instant.close(solved);
-    if (is_lost()) return false;
-    instant.from_velocity(solved);
-    std::vector<double> unused(static_cast<std::size_t>(tables.n_rows()));
-    instant.from_momentum(solved, std::vector<double>(solved.p).data(), 1, unused.data());
-    return is_held = true;
-}
-
-bool Accelerations::Phase::accelerate(const State& state, const std::vector<double>& angles, Side side)
-{
-    if (!settle(state)) return false;
-    if (accelerated == side && solved.angles == angles) return true;
-    solved.angles = angles;
-    instant.accelerate(solved, side);
-    accelerated = side;
-    return true;
-}
-
 Accelerations::Accelerations(const Model& model, const Motion& motion)
-    : model_(model), motion_(motion), turns_(model, motion), events_(model.events()),
+    : model_(model), motion_(motion), turns_(model, motion), events_(model.event_times()),
       phases_(std::make_shared<std::vector<std::shared_ptr<Phase>>>(events_.size() + 1))
 {}
 
@@ -157,14 +99,14 @@ AcceleratedState Accelerations::at(const State& state, Side side) const
         for (Matrix34& A : all.A) std::fill_n(A.a, 12, nan);
         return all;
     }
-    const std::vector<double>& twists = phase.solved.acceleration[side == Side::left ? 0 : 1];
-    std::vector<double> A(phase.solved.X.size());
-    phase.tables.bodies.rates_of(phase.solved.X.data(), twists.data(), A.data());
+    const std::vector<double>& twists = phase.instant.solved().acceleration[side == Side::left ? 0 : 1];
+    std::vector<double> A(phase.instant.solved().X.size());
+    phase.instant.tables().bodies.rates_of(phase.instant.solved().X.data(), twists.data(), A.data());
     for (std::size_t b = 0; b < all.X.size(); ++b)
         for (std::size_t i = 0; i < 12; ++i) {
-            all.X[b].a[i] = phase.solved.X[12 * b + i];
-            all.V[b].a[i] = phase.instant.rates()[12 * b + i];
-            all.A[b].a[i] = A[12 * b + i] + phase.instant.centripetal()[12 * b + i];
+            all.X[b].a[i] = phase.instant.solved().X[12 * b + i];
+            all.V[b].a[i] = phase.instant.system().rates()[12 * b + i];
+            all.A[b].a[i] = A[12 * b + i] + phase.instant.system().centripetal()[12 * b + i];
         }
     return all;
 }
@@ -175,11 +117,12 @@ State Accelerations::on_joints(const State& state) const
     Phase& phase = phase_at(state.t);
     if (!phase.settle(state)) return state;
     State held = state;
-    std::vector<double> V(phase.solved.X.size());
-    phase.tables.bodies.rates_of(phase.solved.X.data(), phase.solved.velocity.data(), V.data());
+    std::vector<double> V(phase.instant.solved().X.size());
+    phase.instant.tables().bodies.rates_of(phase.instant.solved().X.data(),
+                                           phase.instant.solved().velocity.data(), V.data());
     for (std::size_t b = 0; b < held.X.size(); ++b)
         for (std::size_t i = 0; i < 12; ++i) {
-            held.X[b].a[i] = phase.solved.X[12 * b + i];
+            held.X[b].a[i] = phase.instant.solved().X[12 * b + i];
             held.V[b].a[i] = V[12 * b + i];
         }
     return held;
@@ -191,7 +134,7 @@ std::vector<double> Accelerations::multipliers_at(const State& state) const
     if (!phase.accelerate(state, turns_.at(state), Side::right)) return {};
     std::vector<double> all(static_cast<std::size_t>(model_.n_rows()), 0.0);
     for (std::size_t i = 0; i < phase.acting.rows.size(); ++i)
-        all[static_cast<std::size_t>(phase.acting.rows[i])] = phase.solved.multipliers[1][i];
+        all[static_cast<std::size_t>(phase.acting.rows[i])] = phase.instant.multipliers(Side::right)[i];
     return all;
 }
 

@@ -52,11 +52,9 @@ double rigidity_violation(const Model& model, std::span<const Matrix34> X)
     return largest;
 }
 
-/// Also at the ends of its time.
 bool is_held(const ModelTables& tables, int row, double t)
 {
-    const Joint& joint = tables.model->joints()[tables.model->row_joint(row)];
-    return joint.from <= t && t <= joint.until;
+    return tables.model->joints()[tables.model->row_joint(row)].holds_at(t);
 }
 
 /// Largest |Phi| / scale of all rows that are held.

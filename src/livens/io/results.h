@@ -38,6 +38,12 @@ struct RunNumbers {
     std::vector<double> values, errors;   ///< estimated; nan: not known
 };
 
+/// What the motion decided, in its order.
+struct RunEvents {
+    std::vector<std::string> names;      ///< of the scenario's events
+    std::vector<double> times, errors;   ///< s; estimated, nan: not known
+};
+
 /// A run as it stands in the file: everything but the model, which is made again from the scenario text.
 struct Run : PartNames {
     std::string scenario_text;
@@ -48,6 +54,7 @@ struct Run : PartNames {
     std::string method;           ///< name_of() the method
     Motion motion;
     SolveReport report;
+    RunEvents events;
     RunNumbers numbers;
     Verdict verdict;   ///< from a file without reasons, remarks and violations
     ErrorEstimate estimate;
@@ -85,6 +92,8 @@ void write_figures(JsonWriter& json, const Run& run);
 
 /// Estimated errors of its unknown numbers, if it has some, as "found_errors"; null: not known.
 void write_found_errors(JsonWriter& json, const Run& run);
+/// What the motion decided, if anything, as "events": a list of {name, t, error}.
+void write_events(JsonWriter& json, const Run& run);
 
 /// Throws IoError now if `file` could not be written: the folder is missing, it is a directory, no
 /// permission, a device or a pipe. A temporary file is made there and removed again, to be sure. Call before

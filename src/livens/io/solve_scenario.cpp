@@ -51,7 +51,39 @@ void tell_found(SolvedScenario& solved)
     }
 }
 
+/// "'lands' came true at 1.23456789 s, within 3e-13 s"
+void tell_events(const Model& model, Solution& solution)
+{
+    constexpr std::size_t most = 12;
+    const std::vector<SolvedEvent>& all = solution.events;
+    for (std::size_t k = 0; k < std::min(most, all.size()); ++k) {
+        const SolvedEvent& one = all[k];
+        const Event& event = model.events()[static_cast<std::size_t>(one.event)];
+        std::string text = "'" + event.name + "' came true at " + to_text(one.t, 12) + " s";
+        if (std::isfinite(one.error)) text += ", within " + to_text(one.error, 2) + " s";
+        if (event.action.does == EventAction::Does::end_motion) text += ", and ends the motion";
+        solution.report.notes.push_back(std::move(text));
+    }
+    if (all.size() > most)
+        solution.report.notes.push_back("and " + std::to_string(all.size() - most) +
+                                        " more events, which the result file lists");
+}
+
 }   // namespace
+
+void take_events(const Run& run, Scenario& scenario)
+{
+    const std::vector<Event>& known = scenario.model.events();
+    if (known.empty() || run.motion.mesh.ends.empty()) return;
+    std::vector<SolvedEvent> events;
+    for (std::size_t k = 0; k < run.events.names.size(); ++k) {
+        const auto at = std::ranges::find(known, run.events.names[k], &Event::name);
+        if (at == known.end())
+            throw IoError("the scenario of the run has no event '" + run.events.names[k] + "'", "io-damaged");
+        events.push_back({static_cast<int>(at - known.begin()), run.events.times[k], run.events.errors[k]});
+    }
+    scenario.model = decided_model(scenario.model, run.motion.start(), events);
+}
 
 SolvedScenario solve_scenario(const Scenario& scenario, SolveOptions options,
                               const std::shared_ptr<Prepared>& prepared, std::function<State(double t)> guess)
@@ -66,11 +98,17 @@ SolvedScenario solve_scenario(const Scenario& scenario, SolveOptions options,
                            solved.solution.estimate_seconds;
     const FoundNumbers& numbers = solved.solution.numbers;
     if (numbers.rebuilt.model != nullptr) take_found(with_guesses(scenario, numbers.values), solved);
+    if (solved.solution.decided != nullptr) {   // the same scenario, of which the motion has decided the rest
+        auto decided = std::make_shared<Scenario>(scenario);
+        decided->model = *solved.solution.decided;
+        solved.found = std::move(decided);
+    }
     const Scenario& now = solved.found != nullptr ? *solved.found : scenario;
     estimate(now.model, solved.problem, now.method, options, solved.solution);
     for (Solution& root : solved.solution.roots)
         estimate(now.model, solved.problem, now.method, options, root);
     if (solved.found != nullptr) tell_found(solved);
+    tell_events(now.model, solved.solution);
     return solved;
 }
 
@@ -105,6 +143,17 @@ void tell_limits(const Scenario& scenario, Run& run)
     }
 }
 
+RunEvents events_of(const Model& model, const std::vector<SolvedEvent>& events)
+{
+    RunEvents all;
+    for (const SolvedEvent& one : events) {
+        all.names.push_back(model.events()[static_cast<std::size_t>(one.event)].name);
+        all.times.push_back(one.t);
+        all.errors.push_back(one.error);
+    }
+    return all;
+}
+
 RunNumbers numbers_of(const UnknownNumbers& found, std::vector<double> errors)
 {
     RunNumbers all;
@@ -137,14 +186,21 @@ Run judged_run(const Scenario& given, SolvedScenario&& solved, const std::functi
     const Method method = solution.method;
     RunNumbers numbers;
     if (found != nullptr) numbers = numbers_of(found->unknowns, std::move(solution.numbers.errors));
+    RunEvents events = events_of(scenario.model, solution.events);
     Run run = make_run(scenario.model, std::move(solution), method);
     run.numbers = std::move(numbers);
+    run.events = std::move(events);
     run.scenario_text = scenario.text;
     run.meshes = scenario.meshes;
     run.title = scenario.title;
     run.resolved = scenario.resolved;
     // Without output times the element ends are the samples, where a motion has its best states.
     run.output = scenario.output.empty() ? run.motion.mesh.ends : scenario.output;
+    if (!run.events.names.empty() && run.motion.n_elements() > 0) {   // one of them may have ended it
+        std::erase_if(run.output, [&](double t) { return t > run.motion.end(); });
+        if (run.output.empty() || run.output.back() < run.motion.end())
+            run.output.push_back(run.motion.end());
+    }
     try {
         tell_limits(scenario, run);
     } catch (const Stopped&) {   // as the motion stays unjudged then

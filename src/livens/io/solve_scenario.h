@@ -30,6 +30,9 @@ SolvedScenario solve_scenario(const Scenario& scenario, SolveOptions options,
 /// judge(), and the run with all that the scenario says of it. `goes_on`: see judge().
 Run judged_run(const Scenario& scenario, SolvedScenario&& solved, const std::function<bool()>& goes_on);
 
+/// The scenario that was read from a run's file, with joints and loads as its motion decided. Throws IoError.
+void take_events(const Run& run, Scenario& scenario);
+
 /// The other motions that were found, see Solution::roots, which they leave.
 std::vector<Run> judged_roots(const Scenario& scenario, SolvedScenario& solved,
                               const std::function<bool()>& goes_on);

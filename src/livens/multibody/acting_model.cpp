@@ -3,7 +3,6 @@
 // move.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "livens/multibody/model.h"
 
@@ -21,18 +20,22 @@ std::vector<double> ascending(std::vector<double> all)
 
 }   // namespace
 
-std::vector<double> Model::events() const
+std::vector<double> Model::event_times() const
 {
     std::vector<double> all;
-    for (const Joint& joint : joints_)
-        for (const double t : {joint.from, joint.until})
-            if (std::isfinite(t)) all.push_back(t);
+    const auto add = [&all](const ActingTimes& times) {
+        for (const TimeSpan& one : times.spans())
+            for (const double t : {one.from, one.until})
+                if (std::isfinite(t)) all.push_back(t);
+    };
+    for (const Joint& joint : joints_) add(joint);
+    for (const Load& load : loads_) add(load);
     return ascending(std::move(all));
 }
 
 std::vector<double> Model::load_breaks() const
 {
-    std::vector<double> all = events();
+    std::vector<double> all = event_times();
     const auto add = [&all](const std::vector<double>& more) {
         all.insert(all.end(), more.begin(), more.end());
     };
@@ -54,6 +57,25 @@ Model frozen(const Model& model, Instant at)
     return now;
 }
 
+Model as_decided(const Model& model, const DecidedTimes& times)
+{
+    Model now = model;
+    const auto decide = [](ActingTimes& one, const std::vector<std::vector<TimeSpan>>& all, std::size_t k) {
+        one.is_from_motion = one.is_decided_by_events() && !all.empty();
+        one.decided = one.is_from_motion ? all[k] : std::vector<TimeSpan>{};
+    };
+    for (std::size_t j = 0; j < now.joints_.size(); ++j) decide(now.joints_[j], times.joints, j);
+    for (std::size_t l = 0; l < now.loads_.size(); ++l) {
+        Load& load = now.loads_[l];
+        if (!load.is_decided_by_events()) continue;
+        load = Load(*load.whenever);
+        decide(load, times.loads, l);
+        load = for_its_time(load);
+    }
+    now.changed();
+    return now;
+}
+
 ActingModel acting_at(const Model& model, double t)
 {
     ActingModel acting{Model(model.gravity()), {}, {}};
@@ -63,12 +85,14 @@ ActingModel acting_at(const Model& model, double t)
         if (!joint.acts_at(t)) continue;
         for (int k = 0; k < static_cast<int>(joint.rows.size()); ++k)
             acting.rows.push_back(model.first_row(j) + k);
-        joint.from = -std::numeric_limits<double>::infinity();
-        joint.until = std::numeric_limits<double>::infinity();
+        static_cast<ActingTimes&>(joint) = {};
         acting.joints.push_back(j);
         acting.model.add_joint(std::move(joint));
     }
-    for (const Load& load : model.loads()) acting.model.add_load(load);
+    for (Load load : model.loads()) {
+        static_cast<ActingTimes&>(load) = {};
+        acting.model.add_load(std::move(load));
+    }
     for (const Sensor& sensor : model.sensors()) acting.model.add_sensor(sensor);
     for (const NamedPoint& point : model.points()) acting.model.add_point(point);
     return acting;

@@ -2,12 +2,12 @@
 // Joints: names for sets of constraint rows.
 #pragma once
 
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "livens/base/linear.h"
+#include "livens/multibody/acting_times.h"
 #include "livens/multibody/constraint.h"
 #include "livens/multibody/joint_coordinates.h"
 #include "livens/multibody/rope.h"
@@ -26,7 +26,7 @@ struct JointLine {
 /// that fills in rows; nothing else in livens asks for the kind.
 ///
 /// Reactions are what the joint exerts on `second`, at `point_second`, in world axes.
-struct Joint : JointLine {
+struct Joint : JointLine, ActingTimes {
     std::string name;
     std::string type;   ///< "revolute", ...; for messages and files
     int first = world;
@@ -47,11 +47,6 @@ struct Joint : JointLine {
     std::vector<NamedCoordinate> readings{};
     /// Of a ball joint with readings, in coordinates of `first` and `second`.
     TriadPair triads{};
-    /// It acts from one instant until another (s), which are events of the motion.
-    double from = -std::numeric_limits<double>::infinity();
-    double until = std::numeric_limits<double>::infinity();
-
-    bool acts_at(double t) const { return from <= t && t < until; }
     /// One of its coordinates, or behind them of its readings.
     const NamedCoordinate& coordinate(std::size_t k) const
     {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "livens/base/linear.h"
+#include "livens/multibody/acting_times.h"
 #include "livens/multibody/joint_coordinates.h"
 #include "livens/multibody/rope.h"
 #include "livens/time/enclosure.h"
@@ -166,8 +168,9 @@ struct LoadLine {
     std::vector<BodyPoint> over{};
 };
 
-/// A load is data and functions; a new one is a new maker.
-struct Load : LoadSmoothness, LoadEnergy, LoadLine {
+/// A load is data and functions; a new one is a new maker. Its times are those that events decide; instants
+/// that are stated stand among its breaks.
+struct Load : LoadSmoothness, LoadEnergy, LoadLine, ActingTimes {
     std::string name;
     std::string type;
     /// Those that it acts on, two of them or more, the second the world for a load on one body; then those
@@ -194,6 +197,8 @@ struct Load : LoadSmoothness, LoadEnergy, LoadLine {
     std::function<std::vector<ProductSlopes>(const LoadArguments&)> products = nullptr;
     /// For sensors and people.
     std::vector<LoadReading> readings;
+    /// Of what for_its_time() has made: the load that acts always.
+    std::shared_ptr<const Load> whenever{};
 };
 
 enum class Frame { inertial, body_fixed };

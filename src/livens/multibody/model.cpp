@@ -265,7 +265,7 @@ int Model::add_joint(Joint joint)
         refuse("joint-time", path, "a joint must begin to act before it ends", "exchange 'from' and 'until'");
 
     const int index = static_cast<int>(joints_.size());
-    const bool has_events = std::isfinite(joint.from) || std::isfinite(joint.until);
+    const bool has_events = joint.is_partial();
     has_.events = has_.events || has_events;
     // A joint that does not always act leaves its axes apart; then the angle is that of the turn between both
     // triads.
@@ -308,6 +308,8 @@ int Model::add_load(Load load)
                    "the load needs the orientation of '" + bodies_[load.bodies[b]].name + "', a point mass",
                    "a point mass takes forces in world axes at its own point");
     has_.pieces = has_.pieces || !load.guards.empty() || load.bends_at_centre;
+    has_.events = has_.events || load.is_decided_by_events();
+    if (load.is_decided_by_events() && load.whenever == nullptr) load = for_its_time(load);
     loads_.push_back(std::move(load));
     changed();
     return static_cast<int>(loads_.size()) - 1;
@@ -346,6 +348,37 @@ int Model::add_point(NamedPoint point)
     points_.push_back(std::move(point));
     changed();
     return static_cast<int>(points_.size()) - 1;
+}
+
+int Model::add_event(Event event)
+{
+    check_name(events_, event.name, "event");
+    const std::string path = "event[" + event.name + "]";
+    const EventTerms& terms = event.terms;
+    const auto is_term = [&](int k) { return k >= 0 && k < terms.n_terms; };
+    const bool is_whole = terms.values != nullptr && !terms.when.empty() &&
+                          std::ranges::all_of(terms.when, [&](const std::vector<int>& all) {
+                              return !all.empty() && std::ranges::all_of(all, is_term);
+                          });
+    if (!is_whole) refuse("event-condition", path, "an event needs a condition");
+    for (const ReactionInput& one : terms.reactions)
+        if (one.joint < 0 || one.joint >= static_cast<int>(joints_.size()))
+            refuse("event-condition", path, "there is no joint of this index");
+    const EventAction& action = event.action;
+    const bool is_of_part = action.does == EventAction::Does::begin || action.does == EventAction::Does::end;
+    const auto is_ready = [&](const ActingTimes& times) {
+        return action.does == EventAction::Does::begin ? times.is_begun_by_event : times.is_ended_by_event;
+    };
+    const bool has_joint = action.joint >= 0 && action.joint < static_cast<int>(joints_.size()),
+               has_load = action.load >= 0 && action.load < static_cast<int>(loads_.size());
+    if (is_of_part && (has_joint == has_load ||
+                       !is_ready(has_joint ? static_cast<const ActingTimes&>(joints_[action.joint])
+                                           : static_cast<const ActingTimes&>(loads_[action.load]))))
+        refuse("event-action", path, "an event begins or ends one joint or load that is stated to be so");
+    has_.events = true;
+    events_.push_back(std::move(event));
+    changed();
+    return static_cast<int>(events_.size()) - 1;
 }
 
 int Model::find_body(const std::string& name) const

@@ -11,6 +11,7 @@
 #include "livens/base/linear.h"
 #include "livens/multibody/body.h"
 #include "livens/multibody/displacement.h"
+#include "livens/multibody/events.h"
 #include "livens/multibody/joints.h"
 #include "livens/multibody/loads.h"
 #include "livens/multibody/sensors.h"
@@ -50,6 +51,11 @@ struct KnownLength {
     mutable std::atomic<double> value{0};
 };
 
+/// When joints and loads act, as events have decided: those of no entry act as stated.
+struct DecidedTimes {
+    std::vector<std::vector<TimeSpan>> joints, loads;
+};
+
 /// What a model has of things that not every engine takes.
 struct ModelParts {
     bool drives = false, events = false, pieces = false, rotors = false;
@@ -71,6 +77,8 @@ public:
     int add_sensor(Sensor sensor);
     /// Also throws for the name of a body, and for a place of a point mass other than its own.
     int add_point(NamedPoint point);
+    /// Also throws for an action on what is not there, or is not stated to be decided by events.
+    int add_event(Event event);
 
     const Vector3& gravity() const { return gravity_; }   ///< m/s^2
     const std::vector<Body>& bodies() const { return bodies_; }
@@ -78,6 +86,7 @@ public:
     const std::vector<Load>& loads() const { return loads_; }
     const std::vector<Sensor>& sensors() const { return sensors_; }
     const std::vector<NamedPoint>& points() const { return points_; }
+    const std::vector<Event>& events() const { return events_; }
 
     /// Brings in all of another model, displaced, with a prefix before its names. What it says of the world's
     /// axes and places turns and moves along: points and axes there, forces in world axes, paths of drives,
@@ -112,12 +121,13 @@ public:
     bool has_drives() const { return has_.drives; }
     /// Whether the law of a load or row bends or jumps where the motion decides; see Load::guards.
     bool has_pieces() const { return has_.pieces; }
-    /// Whether joints act for a part of the time; these are what solve() divides it by, see acting_at().
+    /// Whether joints act for a part of the time, or the motion decides something; these are what solve()
+    /// divides time by, see acting_at().
     bool has_events() const { return has_.events; }
     /// Whether coordinates of joints have inertias, see rotors.h.
     bool has_rotors() const { return has_.rotors; }
-    /// When joints begin or end to act, ascending, without repetition.
-    std::vector<double> events() const;
+    /// When joints begin or end to act, and loads as events have it, ascending, without repetition.
+    std::vector<double> event_times() const;
     /// All instants where a load jumps or bends, a drive bends, or a joint begins or ends to act, ascending,
     /// without repetition.
     std::vector<double> load_breaks() const;
@@ -142,6 +152,7 @@ private:
     std::vector<Load> loads_;
     std::vector<Sensor> sensors_;
     std::vector<NamedPoint> points_;
+    std::vector<Event> events_;
     std::vector<RowPlace> rows_;
     std::vector<int> first_rows_;
     ModelParts has_;
@@ -150,10 +161,14 @@ private:
 
     void changed();
     friend Model frozen(const Model& model, Instant at);
+    friend Model as_decided(const Model& model, const DecidedTimes& times);
 };
 
 /// The model with all rows as they are at an instant, without drives: for what is asked of positions alone.
 Model frozen(const Model& model, Instant at);
+
+/// The model of a motion whose events have come out so. Empty times: as it was stated.
+Model as_decided(const Model& model, const DecidedTimes& times);
 
 /// A model with the joints alone that act at an instant, and where they and their rows are in the whole one.
 struct ActingModel {

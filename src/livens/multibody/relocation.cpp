@@ -6,6 +6,7 @@
 
 #include <utility>
 
+#include "livens/base/error.h"
 #include "livens/multibody/loads/load_tape.h"
 
 namespace livens {
@@ -233,6 +234,22 @@ Sensor relocated(Sensor sensor, const Relocation& to)
     if (sensor.load >= 0) sensor.load += to.first_load;
     if (sensor.body >= 0) sensor.body += to.first_body;
     return sensor;
+}
+
+Event relocated(Event event, const Relocation& to)
+{
+    event.name = to.name(event.name);
+    for (LawCoordinate& q : event.terms.coordinates) relocate(q.coordinate, to);
+    for (ReactionInput& one : event.terms.reactions) {
+        if (one.component >= 0 && to.by.rotation != identity<3>())
+            throw InputError({"event-reaction", "event[" + event.name + "]",
+                              "a component of a reaction in world axes, in a part that is turned", "", "", "",
+                              "use the length of the force or torque, or state the event outside"});
+        one.joint += to.first_joint;
+    }
+    if (event.action.joint >= 0) event.action.joint += to.first_joint;
+    if (event.action.load >= 0) event.action.load += to.first_load;
+    return event;
 }
 
 }   // namespace livens

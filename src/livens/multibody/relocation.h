@@ -15,7 +15,7 @@ namespace [[gnu::visibility("default")]] livens {
 struct Relocation {
     std::string prefix;
     Displacement by{};
-    int first_body = 0, first_load = 0;
+    int first_body = 0, first_load = 0, first_joint = 0;
 
     std::string name(const std::string& own) const { return prefix + own; }
     int body(int own) const { return own == world ? world : own + first_body; }
@@ -27,5 +27,7 @@ NamedPoint relocated(NamedPoint point, const Relocation& to);
 Joint relocated(Joint joint, const Relocation& to);
 Load relocated(Load load, const Relocation& to);
 Sensor relocated(Sensor sensor, const Relocation& to);
+/// Throws InputError `event-reaction` for components of reactions where axes turn.
+Event relocated(Event event, const Relocation& to);
 
 }   // namespace gnu::visibility("default")]]livens

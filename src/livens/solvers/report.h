@@ -103,13 +103,14 @@ struct Conditioning {
 
 struct SolveReport : SolveCounters, MeshChanges, Conditioning {
     SolveStatus status = SolveStatus::converged;
-    std::string message;              ///< one line for a person: which joint or body, when, what to try
+    std::string message;   ///< one line for a person: which joint or body, when, what to try
     /// Of conditions at both ends: how far the rounding of rows may move the motion, in lengths and rad.
     double moved_by_rounding = 0;
     double failed_at = 0;             ///< near end of the failed window, s; only if not converged
     double accuracy = 0;              ///< that was asked for; 0: none
     std::vector<int> iterations;      ///< per window; stepping: per element
     std::vector<std::string> notes;   ///< redundant rows, projections, ...
+    std::vector<int> fired;           ///< events of the model that ended the march, see Problem
     std::string estimate_failed;      ///< why nothing tells the error: "the second solution failed: ..."
 
     bool converged() const { return status == SolveStatus::converged; }

@@ -13,6 +13,7 @@
 #include "livens/diagnostics/largest.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/dynamics/start/consistent_start.h"
+#include "livens/multibody/unwrapped_angles.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -38,11 +39,11 @@ void append_from(std::vector<T>& to, const std::vector<T>& more, std::size_t fro
     to.insert(to.end(), more.begin() + static_cast<std::ptrdiff_t>(from), more.end());
 }
 
-std::string names_of(const Model& model, double t, double Joint::*when, double gap)
+std::string names_of_beginning(const Model& model, double t, double gap)
 {
     std::string names;
     for (const Joint& joint : model.joints())
-        if (std::abs(joint.*when - t) <= gap) names += (names.empty() ? "'" : ", '") + joint.name + "'";
+        if (joint.begins_near(t, gap)) names += (names.empty() ? "'" : ", '") + joint.name + "'";
     return names;
 }
 
@@ -52,7 +53,7 @@ std::vector<double> events_inside(const Model& model, double start, double end)
 {
     const double gap = nearest_ends * (end - start);
     std::vector<double> inside;
-    for (const double t : model.events())
+    for (const double t : model.event_times())
         if (t > start + gap && t < end - gap) inside.push_back(t);
     return inside;
 }
@@ -76,6 +77,18 @@ void widen(Motion& motion, const Model& model, const ActingModel& acting)
 {
     const std::size_t n_elements = static_cast<std::size_t>(motion.n_elements());
     motion.n_rows = model.n_rows();
+    // Angles that events count come last, and no one reads them later.
+    const std::size_t n_ends = motion.mesh.ends.size(), n_angles = motion.load_angles.size() / n_ends,
+                      n_kept = UnwrappedAngles(model).size();
+    if (n_angles > n_kept) {
+        std::vector<double> kept;
+        for (std::size_t end = 0; end < n_ends; ++end)
+            append_from(kept,
+                        {motion.load_angles.begin() + static_cast<std::ptrdiff_t>(end * n_angles),
+                         motion.load_angles.begin() + static_cast<std::ptrdiff_t>(end * n_angles + n_kept)},
+                        0);
+        motion.load_angles = std::move(kept);
+    }
     spread(motion.multipliers.values, acting.rows, model.n_rows());
     spread(motion.end_multipliers, acting.rows, model.n_rows());
     if (acting.rows.empty()) {   // no row acts: the arrays were empty
@@ -120,12 +133,31 @@ void join(Motion& whole, Motion&& next)
     std::ranges::sort(whole.redundant_rows);
 }
 
+void drop_last(Motion& motion)
+{
+    const auto n = static_cast<std::size_t>(motion.n_elements());
+    const auto keep = [n](auto& values, std::size_t a_part, std::size_t parts) {
+        if (!values.empty()) values.resize(values.size() / parts * (parts - a_part));
+    };
+    motion.mesh.ends.pop_back();
+    for (auto* some : {&motion.mesh.required, &motion.mesh.bends})
+        std::erase_if(*some, [&](double t) { return t > motion.mesh.ends.back(); });
+    const auto values = static_cast<std::size_t>(motion.X.n_values);
+    motion.X.values.resize(motion.X.values.size() - values * static_cast<std::size_t>(motion.X.degree));
+    keep(motion.multipliers.values, 1, n);
+    keep(motion.velocities, 1, n + 1);
+    keep(motion.momenta, 1, n + 1);
+    keep(motion.accelerations, 1, n + 1);
+    keep(motion.end_multipliers, 1, n + 1);
+    keep(motion.load_angles, 1, n + 1);
+}
+
 ActivationMismatch activation_mismatch(const Model& model, const Motion& motion, int end)
 {
     ActivationMismatch miss;
     const double t = motion.mesh.ends[end], gap = nearest_ends * (motion.end() - motion.start());
-    const bool begins = std::ranges::any_of(
-        model.joints(), [&](const Joint& joint) { return std::abs(joint.from - t) <= gap; });
+    const bool begins =
+        std::ranges::any_of(model.joints(), [&](const Joint& joint) { return joint.begins_near(t, gap); });
     if (!begins) return miss;
     const State state = motion.at_end(end);
     // Just behind the event: the joints that begin are there, those that end are not.
@@ -148,7 +180,7 @@ bool is_met(const Model& model, const Motion& motion, int end, double duration, 
             SolveReport& report)
 {
     const double t = motion.mesh.ends[end];
-    const std::string names = names_of(model, t, &Joint::from, nearest_ends * duration);
+    const std::string names = names_of_beginning(model, t, nearest_ends * duration);
     if (names.empty() || std::isinf(tolerance)) return true;
     const ActivationMismatch miss = activation_mismatch(model, motion, end);
     // Velocities that must meet are compared with the fastest rate of the motion so far, and with one over
@@ -180,7 +212,7 @@ std::string begin_in_words(const Model& model, double start, double end)
 {
     std::string words;
     for (const double t : events_inside(model, start, end))
-        if (const std::string names = names_of(model, t, &Joint::from, 0); !names.empty())
+        if (const std::string names = names_of_beginning(model, t, 0); !names.empty())
             words += (words.empty() ? "" : ", ") + names + " begins to act at " + to_text(t, 6) + " s";
     return words;
 }
@@ -194,7 +226,7 @@ void tell_releases(const Model& model, const Motion& motion, const std::vector<d
         const std::vector<JointSample> at = sample_joints(model, motion, ends[k]);
         for (std::size_t j = 0; j < at.size(); ++j) {
             const Joint& joint = model.joints()[j];
-            if (!(std::abs(joint.until - ends[k]) <= gap)) continue;
+            if (!joint.ends_near(ends[k], gap)) continue;
             report.notes.push_back("'" + joint.name + "' is released at " + to_text(ends[k], 6) +
                                    " s, with a reaction of " + to_text(norm(at[j].left.force), 3) +
                                    " N and " + to_text(norm(at[j].left.torque), 3) +

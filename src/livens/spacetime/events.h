@@ -24,6 +24,9 @@ void widen(Motion& motion, const Model& model, const ActingModel& acting);
 /// and each has its side of what has two.
 void join(Motion& whole, Motion&& next);
 
+/// The motion up to its last element but one.
+void drop_last(Motion& motion);
+
 /// How far the joints that begin at an element end find the bodies from where they will hold them: what
 /// closing moves, in lengths and rad, and changes of velocities, by the model's length. Infinite: it fails.
 struct ActivationMismatch {

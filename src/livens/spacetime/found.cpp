@@ -28,6 +28,7 @@ std::vector<double> outputs(const Span& span, const Rebuilt& rebuilt)
 
 const Model& found_model(const Model& model, const Solution& solution)
 {
+    if (solution.decided != nullptr) return *solution.decided;
     return solution.numbers.rebuilt.model != nullptr ? *solution.numbers.rebuilt.model : model;
 }
 

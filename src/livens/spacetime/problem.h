@@ -149,6 +149,10 @@ struct Problem {
     bool is_determination_asked = true;
     /// Between both ends no other motion is looked for than the one that is guessed.
     bool is_only_guess = false;
+    /// Asked after each element of a march of single ones: events of the model that end it there.
+    std::function<std::vector<int>(const Motion& so_far)> fired{};
+    /// Whether events that end the motion do so; false: it goes on, for comparison.
+    bool ends_by_events = true;
 };
 
 }   // namespace gnu::visibility("default")]]livens

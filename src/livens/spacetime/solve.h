@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "livens/diagnostics/acceptance.h"
@@ -20,6 +21,14 @@ namespace [[gnu::visibility("default")]] livens {
 inline namespace multibody_internal {
 class WithRotors;
 }   // namespace multibody_internal
+
+/// What the motion decided.
+struct SolvedEvent {
+    int event = 0;   ///< of the model
+    double t = 0;    ///< s
+    /// Estimated, of t (s): that of the second solution differs by so much. nan: not known.
+    double error = std::numeric_limits<double>::quiet_NaN();
+};
 
 struct Solution {
     Motion motion;        ///< up to the last good element end
@@ -41,6 +50,12 @@ struct Solution {
     /// no value; solve() throws it.
     std::optional<Complaint> cannot_begin{};
     FoundNumbers numbers{};
+    std::vector<SolvedEvent> events{};   ///< in the order of the motion
+    /// From there on (s) the second solution has other events, so that nobody knows these; nan: it has not.
+    double undecided_from = std::numeric_limits<double>::quiet_NaN();
+    /// With joints and loads as events had them begin and end, to which the motion belongs; null: there are
+    /// no events.
+    std::shared_ptr<const Model> decided{};
     /// Where several motions were asked for: the others that were found, by their effort.
     std::vector<Solution> roots{};
     /// Of a model with inertias along coordinates the same with their points, see WithRotors: what estimate()
@@ -54,6 +69,10 @@ struct Solution {
 /// With an accuracy the motion comes with its estimate, or with the status `inaccurate`.
 Solution solve(const Model& model, const Problem& problem, const Time& time, const Method& method,
                const SolveOptions& options = {});
+
+/// A model with joints and loads as these events had them begin and end, in a motion that began at `start`
+/// (s): Solution::decided.
+Model decided_model(const Model& model, double start, std::span<const SolvedEvent> events);
 
 /// By which several motions are ordered: the kinetic energy over all of time, J s.
 double effort_of(const Model& model, const Motion& motion);

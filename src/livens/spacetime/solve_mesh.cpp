@@ -286,6 +286,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     WindowOptions w = options_of_mesh(first, ends, method, options);
     Proposals proposals(problem, numbered, method, *window, phases ? &*phases : nullptr);
     w.propose = std::ref(proposals);
+    w.fired = problem.fired;
     solve_windows(*window, mesh, w, report);
     const auto next = [&](SolveReport& other) {
         other.notes = ends.notes;

@@ -99,6 +99,7 @@ const std::set<std::string_view> without{
     "degree",
     "degree-out-of-range",
     "drives-method",
+    "event-action",
     "gauss-points-out-of-range",
     "gear-ratio",
     "guess-bodies",

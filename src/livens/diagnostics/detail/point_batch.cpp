@@ -67,7 +67,7 @@ void PointBatch::let_go()
     for (int r = 0; r < model_.n_rows(); ++r) {
         const Joint& joint = model_.model->joints()[model_.model->row_joint(r)];
         for (int lane = 0; lane < n_; ++lane)
-            if (!(joint.from <= points_[lane].t && points_[lane].t <= joint.until))   // also at its ends
+            if (!joint.holds_at(points_[lane].t))
                 lanes_.put_violation(r, lane, 0);
     }
 }

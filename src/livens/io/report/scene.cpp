@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -293,7 +294,10 @@ void write_joints(JsonWriter& json, const Model& model)
         add(json, "point_second", joint.point_second);
         add(json, "axis_first", axes.first);
         add(json, "axis_second", axes.second);
-        for (const auto& [key, t] : {std::pair{"from", joint.from}, {"until", joint.until}}) {
+        const std::vector<TimeSpan> spans = joint.spans();
+        const double never = std::numeric_limits<double>::max(), from = spans.empty() ? never : spans[0].from,
+                     until = spans.empty() ? never : spans.back().until;
+        for (const auto& [key, t] : {std::pair{"from", from}, {"until", until}}) {
             json.key(key);
             std::isfinite(t) ? json.value(t) : json.null();
         }

@@ -102,6 +102,8 @@ void check_run(const Run& run)
     check_estimate(run.estimate, run.motion.mesh.ends.size());
     require(run.growth.empty() || run.growth.size() == run.motion.mesh.ends.size(),
             "the number of growths at element ends");
+    for (const auto* of_events : {&run.events.times, &run.events.errors})
+        require(of_events->size() == run.events.names.size(), "the number of events");
     for (const auto* of_numbers : {&run.numbers.values, &run.numbers.errors})
         require(of_numbers->size() == run.numbers.names.size(), "the number of unknown numbers");
     for (std::size_t i = 0; i < run.output.size(); ++i) {

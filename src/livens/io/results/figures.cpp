@@ -196,6 +196,19 @@ void write_figures(JsonWriter& json, const Run& run)
     }
 }
 
+void write_events(JsonWriter& json, const Run& run)
+{
+    if (run.events.names.empty()) return;
+    json.key("events").begin_array();
+    for (std::size_t k = 0; k < run.events.names.size(); ++k)
+        json.begin_object()
+            .member("name", run.events.names[k])
+            .member("t", run.events.times[k])
+            .member("error", run.events.errors[k])
+            .end_object();
+    json.end_array();
+}
+
 void write_found_errors(JsonWriter& json, const Run& run)
 {
     const RunNumbers& numbers = run.numbers;

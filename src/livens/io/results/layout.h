@@ -77,6 +77,10 @@ void visit_head(Archive& archive, AnyRun& run)
     archive.list(
         {"number_error", {"number"}, "mixed", "none", "estimated, of what was found; nan: not known"},
         run.numbers.errors);
+    archive.names("event", "what the motion decided, in its order", run.events.names);
+    archive.list({"event_time", {"event"}, "s", "none", "when"}, run.events.times);
+    archive.list({"event_error", {"event"}, "s", "none", "estimated, of the instants; nan: not known"},
+                 run.events.errors);
     archive.text("options", "all options after defaults, JSON", run.resolved);
 }
 

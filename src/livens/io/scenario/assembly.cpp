@@ -9,6 +9,7 @@
 #include "livens/base/error.h"
 #include "livens/io/scenario/bodies/bodies.h"
 #include "livens/io/scenario/bodies/named_points.h"
+#include "livens/io/scenario/events/events.h"
 #include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/loads/load_kinds.h"
 #include "livens/io/scenario/run/run.h"
@@ -212,6 +213,17 @@ void Assembly::read_all_loads()
     read_loads(builder_);
 }
 
+void Assembly::read_all_events(bool is_run)
+{
+    each_part([](Assembly& part) { part.read_all_events(false); },
+              [&](Assembly& part) {
+                  part.to_.first_joint = part.first_joint_;
+                  for (const Event& event : part.builder_.model().events())
+                      builder_.model().add_event(relocated(event, part.to_));
+              });
+    read_events(builder_, is_run);
+}
+
 bool Assembly::check_count(std::size_t n, const std::string& what) const
 {
     return n <= max_bodies || sources_.findings.error({}, "resource-limit",
@@ -241,6 +253,7 @@ void Assembly::read_model()
     read_all_sensors(false);
     read_all_loads();
     read_all_sensors(true);
+    read_all_events(true);
     check_count(builder_.model().loads().size(), "loads");
 }
 

@@ -84,6 +84,7 @@ private:
     void read_all_drives();
     void read_all_sensors(bool of_loads);
     void read_all_loads();
+    void read_all_events(bool is_run);
 
     bool check_count(std::size_t n, const std::string& what) const;
     void take_bodies(Assembly& part);

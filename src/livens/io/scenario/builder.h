@@ -22,6 +22,13 @@ struct BodyReference {
     bool is_usable = false;   ///< the world, or a body in order; to refer to another one is no second error
 };
 
+/// A joint or load whose times are conditions, and what states it.
+struct StatedConditions {
+    bool is_load = false;
+    std::string name;
+    const Section* section = nullptr;
+};
+
 class Builder {
 public:
     /// Of the tables below `top`; time, method and ends are those of `run`, which is the same but of what is
@@ -38,6 +45,7 @@ public:
     std::vector<std::vector<ShapePart>>& parts() { return parts_; }            ///< of the bodies so far
     std::vector<std::vector<NamedSurface>>& surfaces() { return surfaces_; }   ///< of the bodies so far
     MeshStore& meshes() { return meshes_; }
+    std::vector<StatedConditions>& conditions() { return conditions_; }
     /// Once all bodies are there, also those around what is included.
     void set_length(double length);
     std::unordered_map<std::string, BodyReference>& bodies() { return bodies_; }
@@ -102,6 +110,7 @@ private:
     std::vector<std::vector<ShapePart>> parts_;
     std::vector<std::vector<NamedSurface>> surfaces_;
     MeshStore& meshes_;
+    std::vector<StatedConditions> conditions_;
     std::vector<std::string> excused_;
     std::unordered_map<std::string, BodyReference> bodies_;
     std::map<std::string, SourceLocation> places_;

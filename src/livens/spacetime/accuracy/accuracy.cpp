@@ -200,6 +200,7 @@ private:
         controller.sample_at(samples_of(model_, span_), span_.accuracy);
         WindowOptions w = window_options(model_, options_);
         w.controller = &controller;
+        w.fired = problem_.fired;
         w.goes_on = [&] {
             const int n = mesh.n_elements();
             if (search_.is_free && n == looked_at) {

@@ -74,6 +74,7 @@ ReferenceSolution::ReferenceSolution(const Model& model, const Problem& problem,
             meter_.has_given_place(one.at == Condition::At::start ? 0 : first.n_elements());
     problem_.guess = [&first](double t) { return first.at(t); };
     problem_.near = &first;
+    problem_.fired = nullptr;
     options_.condition = options_.judge = problem_.is_determination_asked = false;
     options_.meeting = std::numeric_limits<double>::infinity();   // both meet it within their errors
     if (const auto* radau = std::get_if<Radau>(&method)) method_ = Radau{radau->degree + 1};
@@ -87,11 +88,7 @@ bool ReferenceSolution::advance(int end)
     if (is_lobatto_)
         std::get<Lobatto>(method_).degree =
             finer_degree(first_.X.degree, telling_jump(model_, first_, first, last));
-    TimeMesh mesh{{first_.mesh.ends.begin() + first, first_.mesh.ends.begin() + last + 1}};
-    for (const double t : mesh.ends)   // it bends at instants of its own, near those of the first
-        (has_bend(first_, mesh, t) ? mesh.bends : mesh.required).push_back(t);
-    for (const double t : missed(mesh, model_.load_breaks()))   // what one solution missed, two would
-        mesh.ends.insert(std::ranges::upper_bound(mesh.ends, t), t);
+    const TimeMesh mesh = mesh_between(first, last);
     const auto begin = std::chrono::steady_clock::now();
     Solution second = solve_unjudged(model_, problem_, mesh, method_, options_);
     if (second.cannot_begin)   // a state that the last piece made, not one that was given
@@ -100,6 +97,8 @@ bool ReferenceSolution::advance(int end)
     report_ = std::move(second.report);
     evaluations_ += report_.evaluations;
     if (!report_.converged()) return false;
+    compare_events(second, mesh.start(), first_.mesh.ends[last]);
+    if (!std::isnan(differs_from_)) return false;
     numbers_ = std::move(second.numbers.values);
     // with unknown instants it has some of its own: elements are compared, not times
     if (!problem_.unknowns.is_empty() && second.motion.mesh.ends.size() == mesh.ends.size())
@@ -111,6 +110,62 @@ bool ReferenceSolution::advance(int end)
     options_.initial = StartPolicy::project;   // an end state holds its constraints to rounding
     at_ = end;
     return true;
+}
+
+/// Where an event ends the motion, its own may come later.
+TimeMesh ReferenceSolution::mesh_between(int first, int last) const
+{
+    TimeMesh mesh{{first_.mesh.ends.begin() + first, first_.mesh.ends.begin() + last + 1}};
+    const bool is_open = ends_by_event(last);
+    const double end = mesh.end();
+    if (is_open) mesh.ends.push_back(end + 0.5 * first_.mesh.length(last - 1));
+    for (const double t : mesh.ends)   // it bends at instants of its own, near those of the first
+        (has_bend(first_, mesh, t) ? mesh.bends : mesh.required).push_back(t);
+    for (const double t : missed(mesh, model_.load_breaks()))   // what one solution missed, two would
+        mesh.ends.insert(std::ranges::upper_bound(mesh.ends, t), t);
+    return mesh;
+}
+
+bool ReferenceSolution::ends_by_event(int end) const
+{
+    return end == first_.n_elements() && !events_.empty() && events_.back().t == first_.end() &&
+           model_.events()[static_cast<std::size_t>(events_.back().event)].action.does ==
+               EventAction::Does::end_motion;
+}
+
+/// Each solution has its own instants. At an event its state is compared where the first one has it: it moves
+/// there as fast as it does, which leaves out what is of second order in the difference.
+void ReferenceSolution::compare_events(Solution& second, double start, double end)
+{
+    const double gap = nearest_ends * (end - start);
+    std::vector<SolvedEvent*> of_first;
+    for (SolvedEvent& one : events_)
+        if (one.t > start && one.t <= end) of_first.push_back(&one);
+    std::vector<SolvedEvent>& own = second.events;
+    for (std::size_t k = 0; k < std::max(own.size(), of_first.size()); ++k) {
+        if (k < own.size() && k < of_first.size() && own[k].event == of_first[k]->event) continue;
+        const bool is_last = k + 1 >= std::max(own.size(), of_first.size());
+        const double t = k < of_first.size() ? of_first[k]->t : own[k].t;
+        if (is_last && std::abs(t - end) <= gap) break;   // it may come just behind the end
+        differs_from_ = k < own.size() ? std::min(t, own[k].t) : t;
+        return;
+    }
+    Motion& motion = second.motion;
+    for (std::size_t k = 0; k < std::min(own.size(), of_first.size()); ++k) {
+        const double there = of_first[k]->t, later = there - own[k].t;
+        of_first[k]->error = std::abs(later);
+        const int i = element_end_at(motion.mesh, own[k].t), n = motion.n_elements();
+        const bool fits =
+            i > 0 && there > motion.mesh.ends[i - 1] && (i == n || there < motion.mesh.ends[i + 1]);
+        if (!fits || later == 0) continue;
+        motion.mesh.ends[i] = there;
+        const std::span<double> X =
+            i < n ? motion.X.coefficient(i, 0) : motion.X.coefficient(n - 1, motion.X.degree);
+        for (std::size_t b = 0; b < static_cast<std::size_t>(motion.n_bodies); ++b)
+            for (std::size_t c = 0; c < 12; ++c)
+                X[12 * b + c] +=
+                    later * motion.velocities[static_cast<std::size_t>(i) * motion.n_bodies + b].a[c];
+    }
 }
 
 void ReferenceSolution::tell_numbers(FoundNumbers& first) const
@@ -139,7 +194,7 @@ std::vector<Vibration> vibrations_beside(const Model& model, const Motion& motio
 std::vector<int> event_ends(const Model& model, const Motion& motion)
 {
     std::vector<int> ends;
-    for (const double t : model.events()) {
+    for (const double t : model.event_times()) {
         const int end = element_end_at(motion.mesh, snap_to_element_end(motion.mesh, t));
         if (end > 0 && end < motion.n_elements()) ends.push_back(end);
     }
@@ -258,13 +313,20 @@ void measure_error(const Model& model, const Problem& problem, const Method& met
     const int n = solution.motion.n_elements();
     const Conditions& given = problem.conditions;
     const bool is_march = given.has_state();
-    const int piece = is_march ? std::min(n, elements_at_once) : n;
+    // Between pieces angles are lost that events count.
+    const int piece = is_march && model.events().empty() ? std::min(n, elements_at_once) : n;
     ReferenceSolution second(model, problem, method, options, solution.motion);
+    second.expect(solution.events);
+    solution.undecided_from = std::numeric_limits<double>::quiet_NaN();
     for (int done = piece;; done = std::min(done + piece, n)) {
         const bool is_good = second.advance(given.at_end == Known::state ? n - done : done);
         solution.estimate_seconds = second.seconds();
         if (!is_good) {
-            if (second.report().status == SolveStatus::cancelled)
+            if (!std::isnan(second.differs_from())) {
+                solution.undecided_from = second.differs_from();
+                solution.report.estimate_failed =
+                    "a second solution has other events from " + to_text(second.differs_from(), 6) + " s on";
+            } else if (second.report().status == SolveStatus::cancelled)
                 solution.report.notes.push_back("stopped as asked before the error was estimated");
             else
                 solution.report.estimate_failed = "the second solution failed: " + second.report().message;
@@ -273,6 +335,7 @@ void measure_error(const Model& model, const Problem& problem, const Method& met
         if (done == n) break;
     }
     solution.estimate = second.take(n);
+    solution.events = second.events();
     second.tell_numbers(solution.numbers);
     name_law(solution, solution.estimate);
     add_lost_vibrations(model, solution.motion, solution.estimate);

@@ -66,7 +66,8 @@ Growth growth(const Model& model, const Problem& stated, const Method& method, c
     problem.unknowns = {};
     if (problem.conditions.at_start != Known::state || motion.n_elements() == 0) return {};
     SolveOptions quiet = options;
-    quiet.condition = quiet.judge = quiet.end_at_bends = quiet.look_at_laws = false;
+    quiet.condition = quiet.judge = quiet.look_at_laws = false;
+    quiet.end_at_bends = !model.events().empty();
     quiet.meeting = std::numeric_limits<double>::infinity();   // neighbours are beside it
     quiet.initial = StartPolicy::project;
     std::optional<Ends> closed;

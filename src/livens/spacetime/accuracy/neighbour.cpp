@@ -84,7 +84,9 @@ bool Neighbour::solve(const State& start, const Motion& near, int first, int las
             if (t > mesh_.start() && t <= mesh_.end()) mesh_.bends.push_back(t);
     if (closed_ != nullptr) return march(start, near, left);
     // where no start beside the motion closes, or it has come to a singular position, there is none
-    Solution one = solve_unjudged(model_, {{start}, {}, &near, prepared_}, mesh_, method_, options_);
+    Problem problem{{start}, {}, &near, prepared_};
+    problem.ends_by_events = false;
+    Solution one = solve_unjudged(model_, problem, mesh_, method_, options_);
     motion_ = std::move(one.motion);
     return one.report.converged();
 }

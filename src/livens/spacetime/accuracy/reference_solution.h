@@ -16,6 +16,12 @@ public:
     ReferenceSolution(const Model& model, const Problem& problem, const Method& method,
                       const SolveOptions& options, const Motion& first);
 
+    /// Events of the first motion that it has to have as well, at instants of its own. Where it has others,
+    /// differs_from() tells since when.
+    void expect(const std::vector<SolvedEvent>& events) { events_ = events; }
+    const std::vector<SolvedEvent>& events() const { return events_; }   ///< with their errors
+    double differs_from() const { return differs_from_; }                ///< s; nan: it does not
+
     /// From where it is to an element end of the first motion. False: it failed, see report().
     bool advance(int end);
     int reached() const { return at_; }   ///< element end
@@ -29,6 +35,10 @@ public:
     ErrorEstimate take(int last) { return meter_.take(last); }
 
 private:
+    TimeMesh mesh_between(int first, int last) const;
+    bool ends_by_event(int end) const;
+    void compare_events(Solution& second, double start, double end);
+
     const Model& model_;
     Problem problem_;   // of what is to come
     Method method_;
@@ -41,6 +51,8 @@ private:
     long long evaluations_ = 0;
     double seconds_ = 0;
     std::vector<double> numbers_;   // that it found
+    std::vector<SolvedEvent> events_;
+    double differs_from_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Of what rounding may move a motion between both ends by, if all of it went the worst way: what it does

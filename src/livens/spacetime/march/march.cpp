@@ -252,6 +252,10 @@ bool March::goes_on(const NewtonReport& outcome)
         !progress || progress({done_, n_elements(), time_, outcome.iterations, outcome.residual});
     if (!is_let && time_ != end_) return fail(SolveStatus::cancelled, of_stop(time_));
     if (options_.goes_on && !options_.goes_on()) return false;
+    if (options_.fired) {
+        report_.fired = options_.fired(*window_.monitor().so_far());
+        if (!report_.fired.empty()) return false;
+    }
     const bool is_stuck = options_.controller != nullptr && options_.ends_at_bends && events_.is_stuck();
     const std::string load = is_stuck ? window_.monitor().jumping_load() : "";
     return load.empty() || fail(SolveStatus::not_converged, of_sticking(load, time_));

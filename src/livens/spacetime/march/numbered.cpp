@@ -42,7 +42,7 @@ double moved_with(const std::vector<double>& from, double t, const std::vector<d
 NumberedProblem::Anchors NumberedProblem::anchors_of(const Model& model, double start, double end) const
 {
     Anchors all{{start}, {}};
-    const std::vector<double> events = model.events();
+    const std::vector<double> events = model.event_times();
     std::vector<double> inside = model.load_breaks();
     inside.insert(inside.end(), unknowns_.held.begin(), unknowns_.held.end());
     std::ranges::sort(inside);

@@ -41,6 +41,8 @@ struct WindowOptions : DivisionOptions {
     std::function<std::string(const Motion& so_far, double until)> watch{};
     /// Called when elements were closed; false ends the march there, which is no failure.
     std::function<bool()> goes_on{};
+    /// See Problem; the report has what it says.
+    std::function<std::vector<int>(const Motion& so_far)> fired{};
 };
 
 /// Solves all windows of the mesh, or as many as go. What happened is in the report, what was solved in the

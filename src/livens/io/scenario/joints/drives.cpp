@@ -239,8 +239,9 @@ Joint make_drive(Builder& builder, const Section& drive, const std::string& name
     const Section* time = only_section(builder.run(), "time");
     const double start = time == nullptr ? 0 : time->number("start"),
                  end = time == nullptr ? start : time->number("end");
-    const Duration during{start, end, std::max(start, drive.has("from") ? drive.number("from") : start),
-                          std::min(end, drive.has("until") ? drive.number("until") : end)};
+    const Duration during{start, end,
+                          std::max(start, has_number(drive, "from") ? drive.number("from") : start),
+                          std::min(end, has_number(drive, "until") ? drive.number("until") : end)};
     const std::vector<Matrix34> all = builder.start_configurations();
     const Configurations X(all);
     const std::string type = drive.text("type");
@@ -319,11 +320,14 @@ Key step_key(const KeyType& numbers)
 
 }   // namespace
 
-void read_times(const Builder& builder, const Section& section, Joint& joint)
+void read_times(Builder& builder, const Section& section, Joint& joint)
 {
     const Section* time = only_section(builder.run(), "time");
-    if (section.has("from")) joint.from = section.number("from");
-    if (section.has("until")) joint.until = section.number("until");
+    if (has_number(section, "from")) joint.from = section.number("from");
+    if (has_number(section, "until")) joint.until = section.number("until");
+    joint.is_begun_by_event = !condition_of(section, "from").empty();
+    joint.is_ended_by_event = !condition_of(section, "until").empty();
+    if (joint.is_decided_by_events()) builder.conditions().push_back({false, joint.name, &section});
     if (time == nullptr) return;
     const double start = time->number("start"), end = time->number("end");
     const double gap = 1e-8 * (end - start);   // nothing happens in so short a time
@@ -364,12 +368,13 @@ Table drive_table()
              "Name of the drive; results list drives among the joints. Default: `drive of` and the joint or "
              "body."},
          Key{"type", types::choice, ""}.needed(),
-         Key{"from", types::number,
-             "Time at which the drive engages; position and rate must agree with the law then. Default: the "
+         Key{"from", types::number_or_condition,
+             "Time, or condition, at which the drive engages; position and rate must agree with the law "
+             "then. Default: the "
              "initial time.",
              "s"},
-         Key{"until", types::number,
-             "Time at which the drive is released; velocities continue. Default: never.", "s"},
+         Key{"until", types::number_or_condition,
+             "Time, or condition, at which the drive is released; velocities continue. Default: never.", "s"},
          Key{"value", numbers, "Constant value.", "m"}.or_in("rad").or_formulas(formulas_for_value),
          Key{"rate", numbers,
              "Constant rate, such as `\"60 rpm\"`, from the time at which the drive engages. For a varying "

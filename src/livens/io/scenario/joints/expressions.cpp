@@ -71,6 +71,8 @@ void add_reading(Inputs& inputs, const Sensor& sensor, const std::string& symbol
                              : "give an expression of coordinates and their rates");
 }
 
+}   // namespace
+
 void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol, const std::string& text,
                const std::string& path)
 {
@@ -122,8 +124,6 @@ void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol
                      ? "give a joint and its coordinate, as in \"pivot.angle\" or \"pivot.angle_rate\""
                      : suggest(reference.name, known));
 }
-
-}   // namespace
 
 namespace {
 

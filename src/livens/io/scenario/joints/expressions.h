@@ -23,6 +23,9 @@ struct Inputs {
     std::vector<LawCoordinate> coordinates;
     std::vector<Read> reads;
 };
+/// What a name with a point stands for becomes a symbol. Throws InputError at path.expression, path.inputs.
+void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol, const std::string& text,
+               const std::string& path);
 /// Throw InputError at path.inputs, path.expression.
 Inputs read_inputs(const Builder& builder, const Section& section, const std::string& path);
 std::vector<Expression> read_expressions(const Section& section, const Inputs& inputs,

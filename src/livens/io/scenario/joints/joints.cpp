@@ -327,9 +327,14 @@ Table joint_table()
         {Key{"name", types::text,
              "Name of the joint. Default: type and bodies, as in `rod world-upper`, if not taken."},
          Key{"type", types::choice, ""}.needed(),
-         Key{"until", types::number,
-             "Time of release: velocities continue, the reaction ends. Default: never. lobatto and radau "
-             "only.",
+         Key{"from", types::number_or_condition,
+             "Time, or condition, from which the joint acts: bodies must be, and move, as it holds them "
+             "then. "
+             "Default: the initial time. lobatto and radau only.",
+             "s"},
+         Key{"until", types::number_or_condition,
+             "Time of release, or a condition such as `\"latch.force > 80 N\"`: velocities continue, the "
+             "reaction ends. Default: never. lobatto and radau only.",
              "s"}}}
         .with_kinds("type", std::move(all));
 }

@@ -12,7 +12,7 @@
 namespace livens::inline io_internal {
 
 /// `from` and `until` of a joint or drive, as far as they are inside the time.
-void read_times(const Builder& builder, const Section& section, Joint& joint);
+void read_times(Builder& builder, const Section& section, Joint& joint);
 
 /// Strings with units, here and in tables inside, must have those of the coordinate: of an angle the key's
 /// other unit. Throws InputError (`unit`).

@@ -51,8 +51,10 @@ std::vector<Key> joined(std::vector<Key> keys, const More&... more)
 
 std::vector<Key> interval_keys()
 {
-    return {{"from", types::number, "Time at which the load begins to act. Default: always active.", "s"},
-            {"until", types::number, "Time at which the load ceases to act. Default: never.", "s"}};
+    return {{"from", types::number_or_condition,
+             "Time, or condition, at which the load begins to act. Default: always active.", "s"},
+            {"until", types::number_or_condition,
+             "Time, or condition, at which the load ceases to act. Default: never.", "s"}};
 }
 
 /// A constant, a table of values over time or a formula, and when it acts.

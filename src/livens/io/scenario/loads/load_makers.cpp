@@ -31,7 +31,9 @@ TimeFunction read_table(const Section& table, std::size_t component, std::size_t
 TimeFunction while_it_acts(const Section& load, TimeFunction value)
 {
     const Interval acts = read_interval(load);
-    return load.has("from") || load.has("until") ? window(std::move(value), acts.from, acts.until) : value;
+    return has_number(load, "from") || has_number(load, "until")
+               ? window(std::move(value), acts.from, acts.until)
+               : value;
 }
 
 /// The same, if it has a value when the motion begins.
@@ -207,8 +209,8 @@ std::vector<Matrix34> places(const Builder& builder)
 Interval read_interval(const Section& load)
 {
     Interval interval;
-    if (load.has("from")) interval.from = load.number("from");
-    if (load.has("until")) interval.until = load.number("until");
+    if (has_number(load, "from")) interval.from = load.number("from");
+    if (has_number(load, "until")) interval.until = load.number("until");
     return interval;
 }
 

@@ -78,7 +78,14 @@ void read_load(Builder& builder, const Section& load, const std::string& name, b
         return;
     if (!is_good || !over) return;
     builder.guard(path, [&] {
-        builder.model().add_load(kind.make({load, name, first.index, second.index, builder, *over}));
+        Load made = kind.make({load, name, first.index, second.index, builder, *over});
+        made.is_begun_by_event = !condition_of(load, "from").empty();
+        made.is_ended_by_event = !condition_of(load, "until").empty();
+        if (made.is_decided_by_events()) {
+            if (has_number(load, "until")) made.until = load.number("until");
+            builder.conditions().push_back({true, made.name, &load});
+        }
+        builder.model().add_load(std::move(made));
         warn_of_world_points(builder, load, {first.index, second.index});
     });
 }

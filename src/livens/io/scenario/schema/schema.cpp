@@ -21,6 +21,9 @@ Table time_table()
         "given `accuracy`, or into a given number of `elements`.",
         {Key{"start", types::number, "Initial time.", "s", "0"},
          Key{"end", types::number, "Final time, later than `start`.", "s"}.needed(),
+         Key{"until", types::condition,
+             "Condition that ends the motion before `end`, such as `\"door.angle > 60 deg\"` "
+             "([conditions](howto/events.md#conditions))."},
          Key{"elements", types::integer,
              "Number of time elements, each of length (end - start) / elements. Output times and jumps of "
              "loads that do not fall on this grid add further elements. Excludes `accuracy`."}
@@ -126,6 +129,8 @@ const Table& root_table()
              "Prescribed motions: joint coordinates, distances or points as functions of time."}
              .holding(drive_table()),
          Key{"load", types::tables, "Forces, torques, springs and dampers."}.holding(load_table()),
+         Key{"event", types::tables, "Conditions of the motion that are reported, or end it."}.holding(
+             event_table()),
          Key{"sensor", types::tables, "Quantities to record: points, joint coordinates, loads, energies."}
              .holding(sensor_table()),
          Key{"repeat", types::tables, "Bodies, joints, drives, loads and sensors that are repeated."}.holding(

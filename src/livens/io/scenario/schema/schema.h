@@ -31,6 +31,7 @@ enum class Form : std::uint8_t {
     named_numbers,   ///< a table of numbers and expressions under names of the user's choice: see Parameters
     model,           ///< a table that holds what a file would, read by itself
     factors,         ///< a table of numbers of any unit under names of the user's choice
+    condition,       ///< a text with < or >, see read_events()
     quantities       ///< the same, of which each may be three numbers
 };
 
@@ -50,6 +51,8 @@ inline constexpr KeyType truth_or_table{"true or false or a table", Form::truth,
 inline constexpr KeyType integer{"a whole number", Form::integer};
 inline constexpr KeyType integer_or_choice{"a whole number", Form::integer, 0, Form::choice};
 inline constexpr KeyType number{"a number", Form::number};
+inline constexpr KeyType number_or_condition{"a number or a condition", Form::number, 0, Form::condition};
+inline constexpr KeyType condition{"a condition", Form::condition};
 inline constexpr KeyType text{"a string", Form::text};
 inline constexpr KeyType choice{"", Form::choice};
 inline constexpr KeyType interval{"two numbers", Form::row, 2};
@@ -187,6 +190,7 @@ Table world_table();
 Table joint_table();
 Table drive_table();
 Table load_table();
+Table event_table();
 Table sensor_table();
 Table point_table();
 Table include_table();

@@ -60,6 +60,7 @@ std::vector<std::string_view> types_of(Form form)
     case Form::number:
         return {"number", "string", "object"};   // of an unknown one
     case Form::text:
+    case Form::condition:
     case Form::choice:
         return {"string"};
     case Form::names:
@@ -119,7 +120,7 @@ void write_keywords(JsonWriter& json, const Key& key, Form form)
             json.key("required").begin_array().value("unknown").end_array();
         [[fallthrough]];
     case Form::integer:
-        write_pattern(json);
+        if (key.type.other != Form::condition) write_pattern(json);
         write_range(json, key);
         break;
     case Form::choice:

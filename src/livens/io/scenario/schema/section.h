@@ -121,6 +121,18 @@ private:
 /// Whether names of points stand where they say a body, or two; or files that may have what is needed.
 bool is_told_otherwise(const Key& key, const Node& node);
 
+/// What a key states as a condition; empty: it does not.
+inline std::string condition_of(const Section& section, std::string_view key)
+{
+    const Value* value = section.takes(key) ? section.find(key) : nullptr;
+    return value != nullptr && value->numbers.empty() ? value->text : std::string();
+}
+/// It states a number.
+inline bool has_number(const Section& section, std::string_view key)
+{
+    return section.has(key) && condition_of(section, key).empty();
+}
+
 /// The table `key` of a section; null if it is not there.
 inline const Section* only_section(const Section& section, std::string_view key)
 {

@@ -40,6 +40,8 @@ private:
             return node.kind == NodeKind::text && index_of(key_.choices, node.text()) >= 0;
         case Form::text:
             return node.kind == NodeKind::text;
+        case Form::condition:
+            return node.kind == NodeKind::text && node.text().find_first_of("<>") != std::string::npos;
         case Form::names:
             return node.kind == NodeKind::array &&
                    (key_.type.form != Form::rows ||
@@ -70,6 +72,7 @@ private:
         case Form::number:
             return read_number(node);
         case Form::text:
+        case Form::condition:
             return read_text(node, value_.text);
         case Form::choice:
             return read_choice(node);

@@ -215,6 +215,21 @@ Computed unknown_word(const Complaint& complaint, const Parameters& parameters)
 
 }   // namespace
 
+ExpressionWords words_of_formulas(const Parameters& parameters)
+{
+    const auto constant = [&parameters](std::string_view name, int) -> std::optional<double> {
+        const Parameters::One* one = parameters.find(name);
+        return one == nullptr ? std::nullopt : std::optional(one->amount.value);
+    };
+    const auto unit = [](std::string_view text, std::size_t end, int, double& number) {
+        Unit found;
+        const std::size_t behind = end_of_unit(text, end, found);
+        if (behind != end) number = in_si(number, found);
+        return behind;
+    };
+    return {constant, unit};
+}
+
 bool is_computed(std::string_view given, const Parameters& parameters)
 {
     const std::string text = in_ascii(given);

@@ -29,6 +29,8 @@ struct Computed {
 Computed compute(std::string_view text, const Parameters& parameters);
 /// The same of a text that is to have the dimension of `si_unit` (empty: to be a plain number).
 Computed compute(std::string_view text, std::string_view si_unit, const Parameters& parameters);
+/// What formulas have beside symbols: parameters, and numbers with units, in SI. Parameters must outlive it.
+ExpressionWords words_of_formulas(const Parameters& parameters);
 /// Whether it is more than a number with a unit: a text that is not is refused as such.
 bool is_computed(std::string_view text, const Parameters& parameters);
 

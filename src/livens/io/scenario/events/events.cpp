@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Conditions of events: comparisons of formulas, tied by `and` and `or`. A comparison a > b is the number
+// a - b, which is positive where it is true (docs/theory.md, "Events").
+#include "livens/io/scenario/events/events.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "livens/io/scenario/joints/expressions.h"
+#include "livens/io/scenario/joints/joints.h"
+#include "livens/io/scenario/text/parameters.h"
+
+namespace livens::inline io_internal {
+
+namespace {
+
+[[noreturn]] void refuse_condition(const std::string& path, const std::string& text,
+                                   const std::string& message, const std::string& help)
+{
+    throw InputError({"event-condition", path, message, "\"" + text + "\"", "", "", help});
+}
+
+/// The parts of a text between words that stand alone, outside of quotes.
+std::vector<std::string> parts_between(const std::string& text, std::string_view word)
+{
+    std::vector<std::string> parts{""};
+    bool is_quoted = false;
+    const auto is_apart = [&](std::size_t i) {
+        return i >= text.size() || text[i] == ' ' || text[i] == '(' || text[i] == ')';
+    };
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        is_quoted = is_quoted != (text[i] == '\'');
+        const bool is_word = !is_quoted && text.compare(i, word.size(), word) == 0 &&
+                             (i == 0 || is_apart(i - 1)) && is_apart(i + word.size());
+        if (!is_word) {
+            parts.back() += text[i];
+            continue;
+        }
+        parts.emplace_back();
+        i += word.size() - 1;
+    }
+    return parts;
+}
+
+/// "a > b" as the formula of what is positive where it is true.
+std::string formula_of(const std::string& comparison, const std::string& text, const std::string& path)
+{
+    const std::size_t at = comparison.find_first_of("<>");
+    const bool is_one =
+        at != std::string::npos && comparison.find_first_of("<>", at + 1) == std::string::npos;
+    if (!is_one)
+        refuse_condition(path, text, "a condition compares two formulas with < or >",
+                         "as in \"door.angle > 60 deg\", several of them with 'and' or 'or' between");
+    std::string left = comparison.substr(0, at), right = comparison.substr(at + 1);
+    if (right.starts_with('=')) right.erase(0, 1);
+    const auto is_blank = [](const std::string& side) {
+        return side.find_first_not_of(" \t") == std::string::npos;
+    };
+    if (is_blank(left) || is_blank(right) || right.find('=') != std::string::npos)
+        refuse_condition(path, text, "a condition has a formula on either side of < or >",
+                         "as in \"door.angle > 60 deg\"");
+    if (comparison[at] == '<') std::swap(left, right);
+    return "(" + left + ") - (" + right + ")";
+}
+
+/// Of "latch.force", "latch.torque_x"; none: it is something else.
+std::optional<ReactionInput> reaction_of(const Model& model, const std::string& name)
+{
+    const std::size_t point = name.rfind('.');
+    if (point == std::string::npos) return {};
+    const std::string what = name.substr(point + 1);
+    ReactionInput input{model.find_joint(name.substr(0, point)), what.starts_with("torque"), -1};
+    const std::string rest = what.substr(input.is_torque ? 6 : std::min<std::size_t>(5, what.size()));
+    const bool is_reaction = input.is_torque || what.starts_with("force");
+    if (input.joint < 0 || !is_reaction) return {};
+    for (int i = 0; i < 3; ++i)
+        if (rest == std::string("_") + "xyz"[i]) input.component = i;
+    if (!rest.empty() && input.component < 0) return {};
+    return input;
+}
+
+EventTerms terms_of(const Builder& builder, const Section& section, const std::string& text,
+                    const std::string& path)
+{
+    EventTerms terms;
+    std::vector<std::string> formulas;
+    for (const std::string& alternative : parts_between(text, "or")) {
+        terms.when.emplace_back();
+        for (const std::string& one : parts_between(alternative, "and")) {
+            terms.when.back().push_back(static_cast<int>(formulas.size()));
+            formulas.push_back(formula_of(one, text, path));
+        }
+    }
+    Inputs inputs;
+    std::vector<std::string> reactions;
+    for (const std::string& formula : formulas)
+        for (const std::string& name : names_with_points(formula)) {
+            const bool is_known = std::ranges::find(inputs.symbols, name) != inputs.symbols.end() ||
+                                  std::ranges::find(reactions, name) != reactions.end();
+            if (is_known) continue;
+            if (const std::optional<ReactionInput> input = reaction_of(builder.model(), name)) {
+                terms.reactions.push_back(*input);
+                reactions.push_back(name);
+            } else {
+                add_input(builder, inputs, name, name, path);
+            }
+        }
+    std::vector<std::string> symbols = inputs.symbols;
+    symbols.insert(symbols.end(), reactions.begin(), reactions.end());
+    std::vector<Expression> expressions;
+    const ExpressionWords words = words_of_formulas(section.parameters());
+    for (const std::string& formula : formulas) {
+        expressions.emplace_back(formula, symbols, words);
+        if (!expressions.back().guards().empty())
+            refuse_condition(path, text, "a condition has formulas that are smooth",
+                             "several comparisons with 'and' or 'or' between say what min, max and abs say");
+    }
+    terms.coordinates = inputs.coordinates;
+    terms.n_terms = static_cast<int>(expressions.size());
+    terms.values = [expressions, reads = inputs.reads](const LawArguments& at, std::span<const double> forces,
+                                                       std::span<double> out) {
+        std::vector<double> numbers;
+        for (const Inputs::Read& read : reads)
+            numbers.push_back((read.is_rate ? at.rates : at.values)[read.coordinate]);
+        numbers.insert(numbers.end(), forces.begin(), forces.end());
+        for (std::size_t k = 0; k < expressions.size(); ++k) out[k] = expressions[k](at.at.t, numbers);
+    };
+    return terms;
+}
+
+void add_event(Builder& builder, const Section& section, const std::string& name, const std::string& text,
+               const EventAction& action, const std::string& path)
+{
+    builder.remember("event[" + name + "]", section);
+    builder.guard(path, [&] {
+        try {
+            builder.model().add_event({name, text, terms_of(builder, section, text, path), action});
+        } catch (const InputError& error) {
+            Complaint complaint = error.complaint();
+            if (complaint.path.starts_with(path + ".")) complaint.path = path;   // the condition is the place
+            throw InputError(complaint);
+        }
+    });
+}
+
+/// `from` and `until` of what acts for a part of the time.
+void read_times_of(Builder& builder, const Section& section, const std::string& name, EventAction action)
+{
+    const std::string path = (action.joint >= 0 ? "joint[" : "load[") + name + "]";
+    for (const std::string key : {"from", "until"}) {
+        const std::string text = condition_of(section, key);
+        if (text.empty()) continue;
+        action.does = key == "from" ? EventAction::Does::begin : EventAction::Does::end;
+        add_event(builder, section, name + "." + key, text, action, path + "." + key);
+    }
+}
+
+}   // namespace
+
+Table event_table()
+{
+    return {
+        "[[event]]",
+        "A condition of the motion. Where it becomes true a time element ends, and the instant is reported "
+        "with its estimated error. See [conditions](howto/events.md#conditions). For the families lobatto "
+        "and radau with the state at the initial time.",
+        {Key{"name", types::text, "Name of the event. Default: its condition."},
+         Key{"when", types::condition,
+             "Comparison of two formulas of joint coordinates, rates, sensors, points, reactions of "
+             "joints and the time `t`, such as `\"stone.z < 0\"`; several with `and` or `or` between them."}
+             .needed(),
+         choice("action", {"note", "stop"}, "note: the event is reported; stop: the motion ends there.")}};
+}
+
+void read_events(Builder& builder, bool is_run)
+{
+    const Model& model = builder.model();
+    // What was wrong with joints and loads has been told of, and conditions may name them.
+    if (builder.findings().n_errors() > 0) return;
+    for (const StatedConditions& one : builder.conditions()) {
+        const auto index = [&](const auto& all) {
+            const auto at = std::ranges::find_if(all, [&](const auto& part) { return part.name == one.name; });
+            return static_cast<int>(at - all.begin());
+        };
+        EventAction action;
+        (one.is_load ? action.load : action.joint) =
+            one.is_load ? index(model.loads()) : index(model.joints());
+        read_times_of(builder, *one.section, one.name, action);
+    }
+    for (const Section& section : builder.top().sections("event")) {
+        if (!section.is_valid()) continue;
+        const std::string text = section.text("when"),
+                          name = section.has("name") ? section.text("name") : text;
+        EventAction action;
+        if (section.text("action") == "stop") action.does = EventAction::Does::end_motion;
+        add_event(builder, section, name, text, action, "event[" + name + "].when");
+    }
+    const Section* time = only_section(builder.run(), "time");
+    if (!is_run || time == nullptr || !time->is_valid() || condition_of(*time, "until").empty()) return;
+    add_event(builder, *time, "time.until", condition_of(*time, "until"), {EventAction::Does::end_motion},
+              "time.until");
+}
+
+}   // namespace livens::inline io_internal

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Conditions of events as what looks for bends of laws knows them: guards of a load that does nothing.
+#include "livens/multibody/events.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/multibody/loads/load_coordinate.h"
+
+namespace livens {
+
+bool holds(const Event& event, std::span<const double> terms)
+{
+    return std::ranges::any_of(event.terms.when, [&](const std::vector<int>& all) {
+        return std::ranges::all_of(all, [&](int k) { return terms[static_cast<std::size_t>(k)] > 0; });
+    });
+}
+
+namespace {
+
+/// What terms look at in a list of bodies.
+struct Watched {
+    EventTerms terms;
+    std::vector<LoadCoordinate> coordinates;
+    ReactionsAt reactions;
+
+    void values(const LoadArguments& arguments, std::span<double> out) const
+    {
+        std::vector<double> q, rates, forces(terms.reactions.size());
+        for (const LoadCoordinate& coordinate : coordinates) {
+            const CoordinateState state = coordinate.look(arguments);
+            q.push_back(state.value);
+            rates.push_back(state.rate);
+        }
+        if (!forces.empty()) reactions(arguments, forces);
+        terms.values({arguments.at, q, rates}, forces, out);
+    }
+};
+
+}   // namespace
+
+Load watching(const Event& event, const ReactionsAt& reactions, int n_bodies, const Configurations& X)
+{
+    Load load;
+    load.name = event.name;
+    load.type = "event";
+    Watched watched{event.terms, {}, reactions};
+    for (const LawCoordinate& q : event.terms.coordinates)
+        watched.coordinates.emplace_back(q.coordinate, q.at_stated, X);
+    std::vector<int> bodies;
+    for (const LoadCoordinate& coordinate : watched.coordinates)
+        for (const int body : coordinate.bodies())
+            if (body != world && std::ranges::find(bodies, body) == bodies.end()) bodies.push_back(body);
+    if (!event.terms.reactions.empty() || bodies.empty()) {
+        bodies.clear();
+        for (int b = 0; b < n_bodies; ++b) bodies.push_back(b);
+    }
+    // It would act on the first body, and on the world, if it did something.
+    load.bodies = {bodies[0], world};
+    load.bodies.insert(load.bodies.end(), bodies.begin() + 1, bodies.end());
+    for (std::size_t i = 0; i < watched.coordinates.size(); ++i)
+        watched.coordinates[i].place(load, event.terms.coordinates[i].is_needed);
+    load.is_smooth = true;
+    load.guards.assign(static_cast<std::size_t>(event.terms.n_terms), Guard{});
+    const auto all = std::make_shared<const Watched>(std::move(watched));
+    load.guarded = [all](const LoadArguments& arguments, std::span<double> numbers) {
+        all->values(arguments, numbers);
+    };
+    load.forces = [](const LoadArguments&, LoadForces&) {};
+    load.forces.record = [](LoadTape&, const TapeNumber&) {};
+    return load;
+}
+
+namespace {
+
+/// Whether a load acts, on the side of an instant that is meant.
+struct Gate {
+    std::vector<TimeSpan> spans;
+
+    bool is_open(Instant at) const
+    {
+        return std::ranges::any_of(spans, [&](const TimeSpan& one) {
+            return at.side == Side::left ? one.from < at.t && at.t <= one.until : one.has(at.t);
+        });
+    }
+    TimeFunction as_function(const std::vector<double>& breaks) const
+    {
+        return {[gate = *this](Instant at) { return TimeValue{gate.is_open(at) ? 1.0 : 0.0, 0, 0}; }, breaks};
+    }
+};
+
+}   // namespace
+
+Load for_its_time(const Load& load)
+{
+    const Gate gate{load.spans()};
+    const auto inner = std::make_shared<const Load>(load);
+    Load now = load;
+    now.whenever = inner;
+    std::vector<double> instants;
+    for (const TimeSpan& one : gate.spans)
+        for (const double t : {one.from, one.until})
+            if (std::isfinite(t)) instants.push_back(t);
+    std::ranges::sort(instants);
+    instants.erase(std::unique(instants.begin(), instants.end()), instants.end());
+    now.forces = [gate, inner](const LoadArguments& arguments, LoadForces& F) {
+        if (gate.is_open(arguments.at)) inner->forces(arguments, F);
+    };
+    if (load.forces.record)
+        now.forces.record = [acts = gate.as_function(instants), inner](LoadTape& tape,
+                                                                       const TapeNumber& factor) {
+            inner->forces.record(tape, factor * tape.of_time(acts));
+        };
+    if (load.tangent)
+        now.tangent = [gate, inner](const LoadArguments& arguments, LoadTangent& tangent) {
+            if (gate.is_open(arguments.at)) inner->tangent(arguments, tangent);
+        };
+    if (load.products)
+        now.products = [gate, inner](const LoadArguments& arguments) {
+            std::vector<ProductSlopes> found = inner->products(arguments);
+            if (!gate.is_open(arguments.at))
+                for (ProductSlopes& one : found) {
+                    const LoadForces direction = one.direction;
+                    one = ProductSlopes(arguments.X.size());
+                    one.direction = direction;
+                }
+            return found;
+        };
+    if (load.inside)
+        now.inside->factors = [gate, inner](Instant at, std::span<const double> numbers,
+                                            std::span<double> factors) {
+            if (gate.is_open(at))
+                inner->inside->factors(at, numbers, factors);
+            else
+                std::ranges::fill(factors, 0.0);
+        };
+    now.potential = nullptr;
+    now.power = nullptr;
+    now.recorded_power = nullptr;
+    for (std::size_t k = 0; k < load.readings.size(); ++k)
+        if (load.readings[k].unit == "N" || load.readings[k].unit == "N m")
+            now.readings[k].value = [gate, inner, k](const LoadArguments& arguments) {
+                return gate.is_open(arguments.at) ? inner->readings[k].value(arguments) : 0.0;
+            };
+    now.breaks.insert(now.breaks.end(), instants.begin(), instants.end());
+    std::ranges::sort(now.breaks);
+    return now;
+}
+
+}   // namespace livens

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the motion decides: conditions of its own numbers, and what happens where they come true.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "livens/multibody/loads/load_laws.h"
+
+namespace [[gnu::visibility("default")]] livens {
+
+/// What happens where a condition comes true.
+struct EventAction {
+    enum class Does {
+        note,         ///< it is told
+        end_motion,   ///< the motion ends there
+        begin,        ///< a joint or load acts from there on
+        end           ///< it acts until there
+    } does = Does::note;
+    int joint = -1, load = -1;   ///< of `begin` and `end`: one of them
+};
+
+/// A number of what a joint exerts on its second body, as joint_reaction() has it; nothing where the joint
+/// does not act.
+struct ReactionInput {
+    int joint = 0;
+    bool is_torque = false;
+    int component = -1;   ///< x, y or z in world axes; -1: the length
+};
+
+/// Numbers that are positive where what they stand for is true.
+struct EventTerms {
+    std::vector<LawCoordinate> coordinates{};
+    std::vector<ReactionInput> reactions{};
+    int n_terms = 0;
+    std::function<void(const LawArguments&, std::span<const double> reactions, std::span<double> terms)>
+        values = nullptr;
+    /// Any of these, of each all terms: the condition.
+    std::vector<std::vector<int>> when{};
+};
+
+/// A condition that comes true as the motion has it, and an action. An element of the motion ends there; the
+/// instant is that at which the state at the element's end is on the border (docs/theory.md, "Events").
+struct Event {
+    std::string name;
+    std::string text;   ///< of the condition, for people
+    EventTerms terms;
+    EventAction action;
+};
+
+/// Whether the condition holds where its terms have these values.
+bool holds(const Event& event, std::span<const double> terms);
+
+/// Reactions at an instant, for all bodies of the model in its order: one number for each input.
+using ReactionsAt = std::function<void(const LoadArguments& all_bodies, std::span<double> reactions)>;
+
+/// A load that does nothing: its guards are the terms of the event, so that whoever looks where laws bend
+/// sees where the condition may change. `reactions`: needed where the event has inputs of that kind; the load
+/// then looks at all n bodies, in their order from the first on. X: of all bodies at the start.
+Load watching(const Event& event, const ReactionsAt& reactions, int n_bodies, const Configurations& X);
+
+/// The load while it acts, see ActingTimes, and nothing else. What was its potential energy is work of its
+/// forces then, since what it stores goes with it.
+Load for_its_time(const Load& load);
+
+}   // namespace gnu::visibility("default")]]livens

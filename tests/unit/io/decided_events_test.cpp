@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the motion decides: instants against closed forms, and what is refused.
+#include <cmath>
+#include <numbers>
+
+#include "livens/io/solve_scenario.h"
+#include "livens/spacetime/solve.h"
+#include "unit/io/scenario_text.h"
+
+namespace livens {
+
+namespace {
+
+using test::find;
+using test::read;
+using test::shown;
+
+Scenario scenario_of(const std::string& text)
+{
+    ScenarioResult result = read(text);
+    EXPECT_TRUE(result.scenario.has_value() && result.diagnostics.empty()) << text << shown(result);
+    return result.scenario ? std::move(*result.scenario) : Scenario();
+}
+
+SolvedScenario solved(const std::string& text)
+{
+    const Scenario scenario = scenario_of(text);
+    return solve_scenario(scenario, scenario.options, scenario.prepared);
+}
+
+/// A rod of 1 m that swings about an end, let go 0.5 rad from where it hangs.
+std::string pendulum(const std::string& time, const std::string& more = "")
+{
+    return R"(format = 1
+gravity = [0, 0, -9.81]
+body = [{ name = "rod", shape = { box = [0.05, 0.05, 1] }, mass = 2, position = [0, 0, -0.5] }]
+
+[[joint]]
+name = "pin"
+type = "revolute"
+between = ["world", "rod"]
+at = [0, 0, 0]
+axis = [0, 1, 0]
+
+[start]
+coordinates = [{ joint = "pin", value = -0.5 }]
+
+[time]
+)" + time + "\n" + more;
+}
+
+/// From rest at 0.5 rad to where it hangs.
+double quarter_period()
+{
+    const double about_pin = 2 * ((1 + 0.05 * 0.05) / 12 + 0.25), rate = std::sqrt(2 * 9.81 * 0.5 / about_pin);
+    return std::comp_ellint_1(std::sin(0.25)) / rate;
+}
+
+TEST(DecidedEvents, EndTheMotionWhereACoordinateIs)
+{
+    for (const char* how : {"accuracy = 1e-11", "elements = 40"}) {
+        const SolvedScenario s =
+            solved(pendulum(std::string("end = 5\nuntil = \"pin.angle > 0\"\n") + how));
+        const Solution& solution = s.solution;
+        ASSERT_TRUE(solution.report.converged()) << solution.report.message;
+        ASSERT_EQ(solution.events.size(), 1u);
+        EXPECT_NEAR(solution.events[0].t, quarter_period(), 1e-12) << how;
+        EXPECT_EQ(solution.motion.end(), solution.events[0].t);
+        EXPECT_LT(solution.events[0].error, 1e-10);
+        EXPECT_FALSE(solution.estimate.empty());
+    }
+}
+
+/// Where its rate changes sign: the slope of the polynomial is of a lower order than the velocity at the end.
+TEST(DecidedEvents, HaveTheOrderOfStatesAlsoWhereRatesAreAskedFor)
+{
+    double before = 0;
+    for (const int n : {8, 16, 32}) {
+        const SolvedScenario s =
+            solved(pendulum("end = 2\nuntil = \"pin.angle_rate < 0\"\nelements = " + std::to_string(n),
+                            "[method]\nfamily = \"lobatto\"\ndegree = 3\n"));
+        ASSERT_EQ(s.solution.events.size(), 1u) << s.solution.report.message;
+        const double error = std::abs(s.solution.events[0].t - 2 * quarter_period());
+        if (before > 0) EXPECT_LT(error, before / 30) << n;   // order 2p = 6
+        EXPECT_LT(error, 3 * s.solution.events[0].error + 1e-14) << n;
+        EXPECT_LT(s.solution.events[0].error, 10 * error + 1e-14) << n;
+        before = error;
+    }
+}
+
+/// Of a mass on a rod that is let go near the top the rod's force changes from push to pull at cos = 2/3 +
+/// v^2/(3 g R).
+TEST(DecidedEvents, ReadReactions)
+{
+    const double v = 1, g = 9.81, cosine = 2.0 / 3 + v * v / (3 * g);
+    const SolvedScenario s = solved(R"(format = 1
+gravity = [0, 0, -9.81]
+body = [{ name = "ball", shape = { point = true }, mass = 3, position = [0, 0, 1], velocity = [1, 0, 0] }]
+
+[[joint]]
+name = "rod"
+type = "rod"
+points = [[0, 0, 0], [0, 0, 0]]
+between = ["world", "ball"]
+
+[time]
+end = 5
+accuracy = 1e-11
+until = "rod.force_z < 0"
+)");
+    ASSERT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+    ASSERT_EQ(s.solution.events.size(), 1u);
+    const Motion& motion = s.solution.motion;
+    EXPECT_NEAR(motion.at_end(motion.n_elements()).X[0](2, 0), cosine, 1e-11);
+}
+
+std::string door(const std::string& latch, const std::string& until, const std::string& time)
+{
+    return R"(format = 1
+gravity = [0, 0, -9.81]
+body = [{ name = "door", shape = { box = [1, 0.04, 2] }, mass = 20, position = [0.5, 0, 0] }]
+
+[[joint]]
+name = "hinge"
+type = "revolute"
+between = ["world", "door"]
+at = [0, 0, 0]
+axis = [0, 0, 1]
+
+[[joint]]
+name = "latch"
+type = "point_in_plane"
+between = ["world", "door"]
+at = [1, 0, 0]
+axis = [0, 1, 0]
+)" + latch + R"(
+[[load]]
+name = "push"
+type = "actuator"
+joint = "hinge"
+expression = "100*t"
+)" + until + R"(
+[time]
+end = 2
+accuracy = 1e-10
+)" + time + "\n";
+}
+
+/// A latch at 1 m carries 100 t N, opens at 80 N, and from then on the door turns by a torque of 100 t N m.
+TEST(DecidedEvents, ReleaseAJointByItsOwnReaction)
+{
+    const SolvedScenario s =
+        solved(door("until = \"latch.force > 80 N\"", "", "until = \"hinge.angle > 30 deg\""));
+    const Solution& solution = s.solution;
+    ASSERT_TRUE(solution.report.converged()) << solution.report.message;
+    ASSERT_EQ(solution.events.size(), 2u);
+    EXPECT_NEAR(solution.events[0].t, 0.8, 1e-13);
+    const double inertia = 20 * ((1 + 0.04 * 0.04) / 12 + 0.25), t = solution.events[1].t;
+    const double turned = 100 / inertia * (t * t * t / 6 - 0.8 * 0.8 * t / 2 + 0.8 * 0.8 * 0.8 / 3);
+    EXPECT_NEAR(turned, std::numbers::pi / 6, 1e-11);
+    ASSERT_NE(solution.decided, nullptr);
+    EXPECT_TRUE(solution.decided->joints()[1].acts_at(0.79));
+    EXPECT_FALSE(solution.decided->joints()[1].acts_at(0.81));
+    // a model that is decided anew from what was told is the same
+    const Model again = decided_model(s.found->model, 0, solution.events);
+    EXPECT_FALSE(again.joints()[1].acts_at(0.81));
+}
+
+TEST(DecidedEvents, EndLoadsAndTakeWhatActsTogether)
+{
+    // the latch holds until 0.8 s, when two things happen at once
+    const SolvedScenario s =
+        solved(door("until = \"latch.force > 80 N\"", "until = \"latch.force > 80 N\"",
+                    "[[event]]\nname = \"both\"\nwhen = \"latch.force > 40 and t > 0.6\""));
+    const Solution& solution = s.solution;
+    ASSERT_TRUE(solution.report.converged()) << solution.report.message;
+    ASSERT_EQ(solution.events.size(), 3u);
+    EXPECT_NEAR(solution.events[0].t, 0.6, 1e-13);   // the later of both terms
+    EXPECT_NEAR(solution.events[1].t, 0.8, 1e-13);
+    EXPECT_EQ(solution.events[1].t, solution.events[2].t);
+    const State end = solution.motion.at_end(solution.motion.n_elements());
+    EXPECT_NEAR(end.V[0](1, 0), 0, 1e-14);   // nothing pushes the door any more
+}
+
+/// What an error of an instant does later is told: a torque begins where the rod hangs, and ends where it
+/// turns back.
+TEST(DecidedEvents, TellErrorsByInstantsOfTheirOwn)
+{
+    const std::string text = pendulum("end = 1.2\nelements = 9\n", R"([[load]]
+name = "kick"
+type = "actuator"
+joint = "pin"
+value = 6
+from = "pin.angle > 0"
+until = "pin.angle_rate < 0"
+
+[method]
+family = "lobatto"
+degree = 2
+)");
+    std::string fine = text;
+    fine.replace(fine.find("elements = 9"), 12, "accuracy = 1e-12");
+    fine.erase(fine.find("degree = 2"), 10);
+    const SolvedScenario coarse = solved(text), truth = solved(fine);
+    ASSERT_TRUE(coarse.solution.report.converged()) << coarse.solution.report.message;
+    ASSERT_TRUE(truth.solution.report.converged()) << truth.solution.report.message;
+    ASSERT_EQ(coarse.solution.events.size(), truth.solution.events.size());
+    ASSERT_GE(coarse.solution.events.size(), 1u);
+    const Motion &a = coarse.solution.motion, &b = truth.solution.motion;
+    const double error =
+        norm(a.at_end(a.n_elements()).X[0].column(0) - b.at_end(b.n_elements()).X[0].column(0)) /
+        coarse.solution.estimate.length;
+    const double told = coarse.solution.estimate.position.back();
+    EXPECT_GT(told, 0.5 * error);
+    EXPECT_LT(told, 3 * error);
+}
+
+TEST(DecidedEvents, AreRefusedByName)
+{
+    const auto refused = [](const std::string& text, const char* code) {
+        const ScenarioResult result = read(text);
+        EXPECT_NE(find(result, code), nullptr) << code << text << shown(result);
+    };
+    const std::string until = "end = 1\nelements = 10\nuntil = ";
+    refused(pendulum(until + "\"pin.angle\""), "wrong-type");
+    refused(pendulum(until + "\"pin.angle > 0.1 > 0\""), "event-condition");
+    refused(pendulum(until + "\"pin.angle >\""), "event-condition");
+    refused(pendulum(until + "\"max(pin.angle, 0) > 0.1\""), "event-condition");
+    refused(pendulum(until + "\"pin.angel > 0.1\""), "joint-coordinate");
+    refused(pendulum(until + "\"pim.angle > 0.1\""), "input-unknown");
+    refused(pendulum(until + "\"limit > 0.1\""), "expression-name");
+    refused(pendulum(until + "\"pin.angle > 0.1\"", "[method]\nfamily = \"mixed\"\n"), "event-method");
+    refused(pendulum(until + "\"pin.angle > 0.1\"", "[method]\nwindow = 2\n"), "event-method");
+    refused(pendulum("breaks = \"ignore\"\n" + until + "\"pin.angle > 0.1\""), "event-method");
+    refused(pendulum(until + "\"pin.force > 9000\"",
+                     "[[joint]]\nname = \"again\"\ntype = \"revolute\"\nbetween = [\"world\", \"rod\"]\n"
+                     "at = [0, 0.2, 0]\naxis = [0, 1, 0]\n"),
+            "event-reaction");
+}
+
+}   // namespace
+
+}   // namespace livens
