@@ -1923,3 +1923,27 @@ livens_mutant(NAME matrices_drawn_out_without_values
               NEW [[(element.copy > 0]]
               TESTS_OF unit_spacetime
               MUST_FAIL AllPairings/MixedEquations.HaveTheMatrixOfTheirResidualWithManyElements/NaturalEqualX0P0)
+
+# The instant of an event left where the polynomial's slope has it, which is of a lower order than the state.
+livens_mutant(NAME event_by_the_polynomial
+              FILE spacetime/phases.cpp
+              OLD [[if (watch != nullptr && !fired.empty()) meet(*watch, at, fired, next);]]
+              NEW [[static_cast<void>(&Chain::meet);]]
+              TESTS_OF unit_io
+              MUST_FAIL DecidedEvents.HaveTheOrderOfStatesAlsoWhereRatesAreAskedFor)
+
+# The second solution with the instants of the first one, without what their errors do.
+livens_mutant(NAME event_without_an_error
+              FILE spacetime/accuracy/estimate.cpp
+              OLD [[of_first[k]->error = std::abs(later);]]
+              NEW [[of_first[k]->error = 0;]]
+              TESTS_OF unit_io
+              MUST_FAIL DecidedEvents.HaveTheOrderOfStatesAlsoWhereRatesAreAskedFor)
+
+# A load with a condition that acts all the time in lanes.
+livens_mutant(NAME load_beyond_its_event
+              FILE multibody/events.cpp
+              OLD [[inner->forces.record(tape, factor * tape.of_time(acts));]]
+              NEW [[inner->forces.record(tape, factor);]]
+              TESTS_OF unit_io
+              MUST_FAIL DecidedEvents.EndLoadsAndTakeWhatActsTogether)

@@ -64,9 +64,10 @@ TEST(DecidedEvents, EndTheMotionWhereACoordinateIs)
         const Solution& solution = s.solution;
         ASSERT_TRUE(solution.report.converged()) << solution.report.message;
         ASSERT_EQ(solution.events.size(), 1u);
-        EXPECT_NEAR(solution.events[0].t, quarter_period(), 1e-12) << how;
+        const double error = std::abs(solution.events[0].t - quarter_period());
+        EXPECT_LT(error, how[0] == 'a' ? 1e-12 : 1e-9) << how;
         EXPECT_EQ(solution.motion.end(), solution.events[0].t);
-        EXPECT_LT(solution.events[0].error, 1e-10);
+        EXPECT_NEAR(solution.events[0].error, error, 0.1 * error + 1e-13) << how;
         EXPECT_FALSE(solution.estimate.empty());
     }
 }
@@ -81,7 +82,9 @@ TEST(DecidedEvents, HaveTheOrderOfStatesAlsoWhereRatesAreAskedFor)
                             "[method]\nfamily = \"lobatto\"\ndegree = 3\n"));
         ASSERT_EQ(s.solution.events.size(), 1u) << s.solution.report.message;
         const double error = std::abs(s.solution.events[0].t - 2 * quarter_period());
-        if (before > 0) EXPECT_LT(error, before / 30) << n;   // order 2p = 6
+        if (before > 0) {
+            EXPECT_LT(error, before / 30) << n;   // order 2p = 6
+        }
         EXPECT_LT(error, 3 * s.solution.events[0].error + 1e-14) << n;
         EXPECT_LT(s.solution.events[0].error, 10 * error + 1e-14) << n;
         before = error;
@@ -222,7 +225,7 @@ TEST(DecidedEvents, AreRefusedByName)
         EXPECT_NE(find(result, code), nullptr) << code << text << shown(result);
     };
     const std::string until = "end = 1\nelements = 10\nuntil = ";
-    refused(pendulum(until + "\"pin.angle\""), "wrong-type");
+    refused(pendulum(until + "\"pin.angle\""), "event-condition");
     refused(pendulum(until + "\"pin.angle > 0.1 > 0\""), "event-condition");
     refused(pendulum(until + "\"pin.angle >\""), "event-condition");
     refused(pendulum(until + "\"max(pin.angle, 0) > 0.1\""), "event-condition");

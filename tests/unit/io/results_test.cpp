@@ -56,6 +56,9 @@ TEST_F(Results, RunComesBackToTheBit)
     EXPECT_EQ(back.motion.gauss_points, 3);
     EXPECT_EQ(back.motion.block_ends, run.motion.block_ends);
     EXPECT_EQ(back.growth, run.growth);
+    EXPECT_EQ(back.events.names, run.events.names);
+    EXPECT_EQ(back.events.times, run.events.times);
+    EXPECT_EQ(back.events.errors, run.events.errors);
     EXPECT_EQ(back.numbers.names, run.numbers.names);
     EXPECT_EQ(back.numbers.values, run.numbers.values);
     EXPECT_EQ(back.numbers.errors, run.numbers.errors);
@@ -188,7 +191,7 @@ constexpr std::size_t n_members()
 TEST_F(Results, EveryMemberOfARunIsInTheFile)
 {
     static_assert(n_members<PartNames>() == 5);
-    static_assert(n_members<RunFile>() == 15);   // one for its base
+    static_assert(n_members<RunFile>() == 16);   // one for its base
     [[maybe_unused]] const auto& [e1, e2, e3, e4, e5] = EndValues{};
     [[maybe_unused]] const auto& [d1, d2, d3, d4, d5, d6] = Discretisation{};
     [[maybe_unused]] const auto& [f1, f2, f3, f4, f5, f6] = Field{};

@@ -236,6 +236,7 @@ inline RunFile sample_run(const Model& model, int n_elements = 8)
     v.balance.largest_moment = std::numeric_limits<double>::denorm_min();
     v.growth = 1e12;
     v.horizon = 2;
+    run.events = {{"latch.until", "top"}, {0.25, 0.5}, {3e-12, 0}};
     run.numbers = {{"friction.damping", "time.end"}, {0.25, 1.5}, {3e-12, 1e-15}};
     for (int i = 0; i <= n_elements; ++i) run.growth.push_back(std::pow(1e12, i / double(n_elements)));
     ErrorEstimate& e = run.estimate;
