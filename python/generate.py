@@ -165,7 +165,7 @@ class Writer:
         return [key for key in table["keys"] + own if key["name"] != table["chooser"] and key["form"] != NONE]
 
     def handles(self):
-        for kind in ("body", "point", "joint", "drive", "load", "sensor", "event"):
+        for kind in ("body", "point", "joint", "drive", "stop", "load", "sensor", "event"):
             table = self.children[kind]
             self.line(f"\n\nclass {kind.capitalize()}(Entry):")
             self.line(wrapped(f'"""{"An" if kind == "event" else "A"} {kind} of a model. {table["doc"]}', "    "))
@@ -256,6 +256,7 @@ class Writer:
         self.adder("body", self.children["body"], "", "")
         self.adder("point", self.children["point"], "", "a place of a body with a name")
         self.adder("event", self.children["event"], "", "a condition of the motion that is reported, or ends it")
+        self.adder("stop", self.children["stop"], "", "a limit that nothing passes")
         for kind in ("joint", "drive", "load", "sensor"):
             table = self.children[kind]
             for k in table["kinds"]:

@@ -25,7 +25,7 @@ from ._errors import (Diagnostic, InputError, ModelWarning, Place, ResultFileErr
 from ._explain import explain
 from ._export import Comparison, compare
 from ._generated import *   # noqa: F403  the shapes and methods that the schema has, see __all__ there
-from ._generated import Body, Drive, Event, Joint, Load, MethodOptions, Point, Sensor
+from ._generated import Body, Drive, Event, Joint, Load, MethodOptions, Point, Sensor, Stop
 from ._functions import BodyState
 from ._import import from_urdf
 from ._mujoco import from_mjcf
@@ -49,7 +49,7 @@ __all__ = [
     "MethodOptions", "ModeBody", "ModeJoint", "Model", "ModelWarning", "Modes", "Names", "Parameters", "Parts", "Peak",
     "Place", "PlacedBody", "PlacedJoint", "PlacedPoint", "Point", "PointSeries",
     "ReadingSeries", "RestBody", "RestJoint", "ResultFileError", "Section", "Sensor", "SensorSeries", "Series",
-    "Shape", "SlowWarning", "Solution", "SolveError", "SolveWarning", "SolvedEvent", "StateMatrices", "__version__", "compare",
+    "Shape", "SlowWarning", "Solution", "SolveError", "SolveWarning", "SolvedEvent", "StateMatrices", "Stop", "__version__", "compare",
     "explain", "from_mjcf", "from_urdf", "load", "load_solution", "momenta", "positions", "reach", "solve", "solve_many", "state",
     "table", "unknown", "visual",
 ]

@@ -14,7 +14,7 @@ from . import _core
 from ._editing import Tree
 from ._entries import Entry, Names, Section, default_name, unknown_name
 from ._errors import Diagnostic, SlowWarning, SolveWarning, fault, file_name, make_way, stack_level, user_place
-from ._generated import Body, Drive, Event, Joint, Load, Point, Sensor
+from ._generated import Body, Drive, Event, Joint, Load, Point, Sensor, Stop
 from ._included import Added, as_part, files_below, files_of
 from ._meshes import MeshFile, named_meshes
 from ._other_names import of_model
@@ -143,6 +143,11 @@ class Model(Tree):
     def joints(self) -> Names[Joint]:
         """All joints by name."""
         return Names(self, "joint", Joint)
+
+    @property
+    def stops(self) -> Names[Stop]:
+        """All stops by name: limits that nothing passes."""
+        return Names(self, "stop", Stop)
 
     @property
     def drives(self) -> Names[Drive]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import warnings
 from dataclasses import dataclass
@@ -29,11 +30,18 @@ _LARGEST_INLINE = 4_000_000   # characters of a page inside a notebook
 
 @dataclass(frozen=True)
 class SolvedEvent:
-    """A condition that became true: its name, the instant (s), and the estimated error of that (s; nan: not known)."""
+    """A condition that became true: its name, the instant (s), and the estimated error of that (s; nan: not known).
+
+    Of an impact also the impulse along the row of the stop (N s, or N m s of an angle) and the speed with which bodies met
+    (m/s or rad/s), else 0; of a stop that closes the time at which it rests (s), else nan: bodies bounce.
+    """
 
     name: str
     t: float
     error: float
+    impulse: float = 0.0
+    speed: float = 0.0
+    rests_at: float = math.nan
 
 
 class Solution(Series):

@@ -322,12 +322,14 @@ std::map<std::string, double> unknown_errors(const Result& r)
     return all;
 }
 
-std::vector<std::tuple<std::string, double, double>> events(const Result& r)
+using EventNumbers = std::tuple<std::string, double, double, double, double, double>;
+std::vector<EventNumbers> events(const Result& r)
 {
-    std::vector<std::tuple<std::string, double, double>> all;
+    std::vector<EventNumbers> all;
     const RunEvents& events = r.run.events;
     for (std::size_t k = 0; k < events.names.size(); ++k)
-        all.emplace_back(events.names[k], events.times[k], events.errors[k]);
+        all.emplace_back(events.names[k], events.times[k], events.errors[k], events.impulses[k],
+                         events.speeds[k], events.rests[k]);
     return all;
 }
 

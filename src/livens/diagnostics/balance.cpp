@@ -113,6 +113,7 @@ private:
             std::span<const Matrix34>(motion_.momenta)
                 .subspan(static_cast<std::size_t>(end_) * X_.size(), X_.size());
         positions_at_end(motion_, end_, X_);
+        if (const int impact = motion_.impacts.at(end_); impact >= 0) add_impact(impact, V, P);
         const Instant at{motion_.mesh.ends[end_], end_ == motion_.n_elements() ? Side::left : Side::right};
         const double kinetic = kinetic_energy(model_, X_, V),
                      potential = potential_.at(at, X_, V, pass_.turns().at_end(end_));
@@ -135,6 +136,19 @@ private:
         double momentum = 0;
         for (const Matrix34& p : P) momentum += norm(p.column(0));
         raise_to(figures_.largest_momentum, momentum);
+    }
+    /// What an impact takes is no error of the motion, and what it gives comes from joints.
+    void add_impact(int impact, std::span<const Matrix34> V, std::span<const Matrix34> P)
+    {
+        const auto before = [&](const std::vector<Matrix34>& all) {
+            return std::span<const Matrix34>(all).subspan(static_cast<std::size_t>(impact) * X_.size(),
+                                                          X_.size());
+        };
+        const std::span<const Matrix34> P_before = before(motion_.impacts.momenta);
+        total_.work +=
+            kinetic_energy(model_, X_, V) - kinetic_energy(model_, X_, before(motion_.impacts.velocities));
+        total_.linear += linear_momentum(P) - linear_momentum(P_before);
+        total_.angular += angular_momentum(X_, P) - angular_momentum(X_, P_before);
     }
     void append_supply(Balance& piece)
     {

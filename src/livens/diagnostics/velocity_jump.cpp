@@ -35,7 +35,8 @@ std::vector<double> velocity_jumps(const Model& model, const Motion& motion, int
         Patience::ask();
         double& jump = jumps[e - first];
         const double h = motion.mesh.length(e);
-        const std::span<const Matrix34> V = velocities_at_end(motion, at_start ? e : e + 1);
+        const std::span<const Matrix34> V =
+            at_start ? velocities_at_end(motion, e) : velocities_at_end(motion, e + 1, Side::left);
         ends.velocities(e, 0, slopes);
         for (std::size_t b = 0; b < slopes.size(); ++b) {
             const Matrix34 gap = h * (V[b] - slopes[b]);

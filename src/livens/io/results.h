@@ -42,6 +42,9 @@ struct RunNumbers {
 struct RunEvents {
     std::vector<std::string> names;      ///< of the scenario's events
     std::vector<double> times, errors;   ///< s; estimated, nan: not known
+    /// Of impacts, N s or N m s, and m/s or rad/s, else 0; and when a stop that closes would be at rest, s,
+    /// nan: bodies bounce, or it is none.
+    std::vector<double> impulses, speeds, rests;
 };
 
 /// A run as it stands in the file: everything but the model, which is made again from the scenario text.

@@ -51,6 +51,13 @@ void tell_found(SolvedScenario& solved)
     }
 }
 
+/// With which bodies meet: that of the coordinate that the stop is of.
+const char* unit_of_speed(const Event& event)
+{
+    const std::vector<LawCoordinate>& all = event.terms.coordinates;
+    return !all.empty() && all[0].coordinate.is_angle() ? " rad/s" : " m/s";
+}
+
 /// "'lands' came true at 1.23456789 s, within 3e-13 s"
 void tell_events(const Model& model, Solution& solution)
 {
@@ -59,8 +66,13 @@ void tell_events(const Model& model, Solution& solution)
     for (std::size_t k = 0; k < std::min(most, all.size()); ++k) {
         const SolvedEvent& one = all[k];
         const Event& event = model.events()[static_cast<std::size_t>(one.event)];
-        std::string text = "'" + event.name + "' came true at " + to_text(one.t, 12) + " s";
+        const bool is_hit = one.speed > 0;
+        std::string text =
+            "'" + event.name + (is_hit ? "' is hit at " : "' came true at ") + to_text(one.t, 12) + " s";
         if (std::isfinite(one.error)) text += ", within " + to_text(one.error, 2) + " s";
+        if (is_hit) text += ", with " + to_text(one.speed, 3) + unit_of_speed(event);
+        if (std::isfinite(one.rests_at))
+            text += ", and closes: at rest from " + to_text(one.rests_at, 12) + " s on";
         if (event.action.does == EventAction::Does::end_motion) text += ", and ends the motion";
         solution.report.notes.push_back(std::move(text));
     }
@@ -80,7 +92,8 @@ void take_events(const Run& run, Scenario& scenario)
         const auto at = std::ranges::find(known, run.events.names[k], &Event::name);
         if (at == known.end())
             throw IoError("the scenario of the run has no event '" + run.events.names[k] + "'", "io-damaged");
-        events.push_back({static_cast<int>(at - known.begin()), run.events.times[k], run.events.errors[k]});
+        events.push_back({static_cast<int>(at - known.begin()), run.events.times[k], run.events.errors[k],
+                          run.events.impulses[k], run.events.speeds[k], run.events.rests[k]});
     }
     scenario.model = decided_model(scenario.model, run.motion.start(), events);
 }
@@ -150,6 +163,9 @@ RunEvents events_of(const Model& model, const std::vector<SolvedEvent>& events)
         all.names.push_back(model.events()[static_cast<std::size_t>(one.event)].name);
         all.times.push_back(one.t);
         all.errors.push_back(one.error);
+        all.impulses.push_back(one.impulse);
+        all.speeds.push_back(one.speed);
+        all.rests.push_back(one.rests_at);
     }
     return all;
 }

@@ -7,9 +7,39 @@
 #include <utility>
 
 #include "livens/base/error.h"
+#include "livens/multibody/joints.h"
 #include "livens/multibody/loads/load_coordinate.h"
 
 namespace livens {
+
+void check_event(const Event& event, const std::vector<Joint>& joints, const std::vector<Load>& loads)
+{
+    const std::string path = "event[" + event.name + "]";
+    const auto refuse = [&path](const char* code, const char* message) {
+        throw InputError({code, path, message, "", "", "", ""});
+    };
+    const EventTerms& terms = event.terms;
+    const auto is_term = [&](int k) { return k >= 0 && k < terms.n_terms; };
+    const bool is_whole = terms.values != nullptr && !terms.when.empty() &&
+                          std::ranges::all_of(terms.when, [&](const std::vector<int>& all) {
+                              return !all.empty() && std::ranges::all_of(all, is_term);
+                          });
+    if (!is_whole) refuse("event-condition", "an event needs a condition");
+    for (const ReactionInput& one : terms.reactions)
+        if (one.joint < 0 || one.joint >= static_cast<int>(joints.size()))
+            refuse("event-condition", "there is no joint of this index");
+    const EventAction& action = event.action;
+    const bool is_of_part = action.does == EventAction::Does::begin || action.does == EventAction::Does::end;
+    const auto is_ready = [&](const ActingTimes& times) {
+        return action.does == EventAction::Does::begin ? times.is_begun_by_event : times.is_ended_by_event;
+    };
+    const bool has_joint = action.joint >= 0 && action.joint < static_cast<int>(joints.size()),
+               has_load = action.load >= 0 && action.load < static_cast<int>(loads.size());
+    if (is_of_part &&
+        (has_joint == has_load || !is_ready(has_joint ? static_cast<const ActingTimes&>(joints[action.joint])
+                                                      : static_cast<const ActingTimes&>(loads[action.load]))))
+        refuse("event-action", "an event begins or ends one joint or load that says so");
+}
 
 bool holds(const Event& event, std::span<const double> terms)
 {

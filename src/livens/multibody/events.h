@@ -27,7 +27,8 @@ struct EventAction {
 struct ReactionInput {
     int joint = 0;
     bool is_torque = false;
-    int component = -1;   ///< x, y or z in world axes; -1: the length
+    int component = -1;           ///< x, y or z in world axes; -1: the length
+    bool is_multiplier = false;   ///< that of its first row instead
 };
 
 /// Numbers that are positive where what they stand for is true.
@@ -49,6 +50,10 @@ struct Event {
     EventTerms terms;
     EventAction action;
 };
+
+/// Throws InputError: `event-condition` for none, or a joint that is not there, `event-action` for what
+/// begins or ends something that does not say so.
+void check_event(const Event& event, const std::vector<Joint>& joints, const std::vector<Load>& loads);
 
 /// Whether the condition holds where its terms have these values.
 bool holds(const Event& event, std::span<const double> terms);

@@ -2,6 +2,7 @@
 // Joints: names for sets of constraint rows.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,16 @@ struct JointLine {
     std::vector<Vector3> path{};
     /// Of a rope: the points that it runs over.
     std::vector<BodyPoint> over{};
+};
+
+/// How a joint begins to act where bodies move otherwise than it lets them: with an impact, which changes
+/// velocities at once (docs/theory.md, "Impacts").
+struct ImpactLaw {
+    double restitution = 0;   ///< speed apart behind it by speed together before it, 0 to 1
+    /// The side on which its one row is open: the sign of the row's values there. The joint pushes to this
+    /// side alone. 0: it holds both ways, all its rows, with restitution 0.
+    int open_side = 0;
+    bool goes_together = false;   ///< with others at the same instant, by Moreau's law
 };
 
 /// A joint between `first` (a body or the world) and `second` (a body). A new kind of joint is a new function
@@ -41,6 +52,7 @@ struct Joint : JointLine, ActingTimes {
     Vector3 axis_second{};
     /// Functions that must be positive at assembly, where rows alone would admit another branch.
     std::vector<ConstraintRow> branches{};
+    std::optional<ImpactLaw> impact{};   ///< none: it has to find bodies as it holds them
     std::vector<NamedCoordinate> coordinates{};
     /// Beside its coordinates, of a ball joint: the components of its rotation vector, which what is asked
     /// for them takes as coordinates, and its length, which is only read.

@@ -168,9 +168,16 @@ struct LoadLine {
     std::vector<BodyPoint> over{};
 };
 
-/// A load is data and functions; a new one is a new maker. Its times are those that events decide; instants
-/// that are stated stand among its breaks.
-struct Load : LoadSmoothness, LoadEnergy, LoadLine, ActingTimes {
+struct Load;
+
+/// When it acts: instants that are stated stand among its breaks.
+struct LoadTimes : ActingTimes {
+    /// Of what for_its_time() has made: the load that acts always.
+    std::shared_ptr<const Load> whenever{};
+};
+
+/// A load is data and functions; a new one is a new maker.
+struct Load : LoadSmoothness, LoadEnergy, LoadLine, LoadTimes {
     std::string name;
     std::string type;
     /// Those that it acts on, two of them or more, the second the world for a load on one body; then those
@@ -197,8 +204,6 @@ struct Load : LoadSmoothness, LoadEnergy, LoadLine, ActingTimes {
     std::function<std::vector<ProductSlopes>(const LoadArguments&)> products = nullptr;
     /// For sensors and people.
     std::vector<LoadReading> readings;
-    /// Of what for_its_time() has made: the load that acts always.
-    std::shared_ptr<const Load> whenever{};
 };
 
 enum class Frame { inertial, body_fixed };

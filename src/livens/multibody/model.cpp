@@ -353,28 +353,7 @@ int Model::add_point(NamedPoint point)
 int Model::add_event(Event event)
 {
     check_name(events_, event.name, "event");
-    const std::string path = "event[" + event.name + "]";
-    const EventTerms& terms = event.terms;
-    const auto is_term = [&](int k) { return k >= 0 && k < terms.n_terms; };
-    const bool is_whole = terms.values != nullptr && !terms.when.empty() &&
-                          std::ranges::all_of(terms.when, [&](const std::vector<int>& all) {
-                              return !all.empty() && std::ranges::all_of(all, is_term);
-                          });
-    if (!is_whole) refuse("event-condition", path, "an event needs a condition");
-    for (const ReactionInput& one : terms.reactions)
-        if (one.joint < 0 || one.joint >= static_cast<int>(joints_.size()))
-            refuse("event-condition", path, "there is no joint of this index");
-    const EventAction& action = event.action;
-    const bool is_of_part = action.does == EventAction::Does::begin || action.does == EventAction::Does::end;
-    const auto is_ready = [&](const ActingTimes& times) {
-        return action.does == EventAction::Does::begin ? times.is_begun_by_event : times.is_ended_by_event;
-    };
-    const bool has_joint = action.joint >= 0 && action.joint < static_cast<int>(joints_.size()),
-               has_load = action.load >= 0 && action.load < static_cast<int>(loads_.size());
-    if (is_of_part && (has_joint == has_load ||
-                       !is_ready(has_joint ? static_cast<const ActingTimes&>(joints_[action.joint])
-                                           : static_cast<const ActingTimes&>(loads_[action.load]))))
-        refuse("event-action", path, "an event begins or ends one joint or load that is stated to be so");
+    check_event(event, joints_, loads_);
     has_.events = true;
     events_.push_back(std::move(event));
     changed();

@@ -116,6 +116,7 @@ std::size_t Motion::n_bytes() const
     for (const Field* field : {&X, &P, &multipliers, &rigidity})
         numbers += field->values.capacity() + field->denominators.capacity();
     for (const auto* columns : {&momenta, &velocities, &accelerations}) numbers += 12 * columns->capacity();
+    for (const auto* columns : {&impacts.momenta, &impacts.velocities}) numbers += 12 * columns->capacity();
     return numbers * sizeof(double);
 }
 
@@ -154,7 +155,13 @@ State Motion::at(double t) const
     return state;
 }
 
-State Motion::at_end(int end) const
+int Impacts::at(int end) const
+{
+    const auto found = std::ranges::lower_bound(ends, end);
+    return found != ends.end() && *found == end ? static_cast<int>(found - ends.begin()) : -1;
+}
+
+State Motion::at_end(int end, Side side) const
 {
     assert(end >= 0 && end <= n_elements());
     assert(static_cast<int>(velocities.size()) == (n_elements() + 1) * n_bodies);
@@ -168,6 +175,8 @@ State Motion::at_end(int end) const
         state.X.push_back(body_of(x, b));
         state.V.push_back(velocities[end * n_bodies + b]);
     }
+    const int impact = side == Side::left ? impacts.at(end) : -1;
+    if (impact >= 0) std::copy_n(impacts.velocities.begin() + impact * n_bodies, n_bodies, state.V.begin());
     state.angles = angles_at(end);
     return state;
 }

@@ -48,6 +48,16 @@ enum class ConstraintsHold { unknown, at_nodes, at_element_ends, weakly };
 /// "", "element nodes", "element ends", "weakly"
 const char* to_string(ConstraintsHold where);
 
+/// Element ends with an impact, ascending, and how momenta and velocities were before it: entry (impact *
+/// n_bodies + body), as EndValues has them behind it.
+struct Impacts {
+    std::vector<int> ends{};
+    std::vector<Matrix34> momenta{}, velocities{};
+
+    /// -1: there is none at this element end.
+    int at(int end) const;
+};
+
 /// At element ends, entry (end * n_bodies + body), or (2 * end + side) with side 0 = left, 1 = right.
 struct EndValues {
     std::vector<Matrix34> momenta;         ///< tangent momentum P = X' m
@@ -55,6 +65,7 @@ struct EndValues {
     std::vector<Matrix34> accelerations;   ///< X'', entry ((2 * end + side) * n_bodies + body); may be empty
     std::vector<double> load_angles;       ///< rows of Turns; empty: nobody counted
     std::vector<double> end_multipliers;   ///< acceleration level, (2 * end + side) * n_rows + row; or empty
+    Impacts impacts{};                     ///< behind which momenta and velocities above are
 };
 
 /// The method that made a motion, and what may be believed of it.
@@ -96,7 +107,8 @@ struct Motion : EndValues, Discretisation {
 
     /// X and V at any instant: at element ends the end values, else the polynomial and its derivative.
     State at(double t) const;
-    State at_end(int end) const;
+    /// On one side of an impact.
+    State at_end(int end, Side side = Side::right) const;
 
 private:
     std::vector<double> angles_at(int end) const;
@@ -115,4 +127,4 @@ Reaction joint_reaction(const Model& model, int joint, std::span<const Matrix34>
 /// The same from what the joint does to X of its second body: F of -G^T lambda.
 Reaction joint_reaction(const Joint& joint, const Matrix34& X_second, const Matrix34& F);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

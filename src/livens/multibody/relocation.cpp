@@ -236,7 +236,7 @@ Sensor relocated(Sensor sensor, const Relocation& to)
     return sensor;
 }
 
-Event relocated(Event event, const Relocation& to)
+Event relocated(Event event, const Relocation& to, const std::function<int(int)>& joint)
 {
     event.name = to.name(event.name);
     for (LawCoordinate& q : event.terms.coordinates) relocate(q.coordinate, to);
@@ -245,9 +245,9 @@ Event relocated(Event event, const Relocation& to)
             throw InputError({"event-reaction", "event[" + event.name + "]",
                               "a component of a reaction in world axes, in a part that is turned", "", "", "",
                               "use the length of the force or torque, or state the event outside"});
-        one.joint += to.first_joint;
+        one.joint = joint(one.joint);
     }
-    if (event.action.joint >= 0) event.action.joint += to.first_joint;
+    if (event.action.joint >= 0) event.action.joint = joint(event.action.joint);
     if (event.action.load >= 0) event.action.load += to.first_load;
     return event;
 }

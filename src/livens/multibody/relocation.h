@@ -2,6 +2,7 @@
 // Parts of a model as they are in another one, to which they are added.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "livens/multibody/displacement.h"
@@ -15,7 +16,7 @@ namespace [[gnu::visibility("default")]] livens {
 struct Relocation {
     std::string prefix;
     Displacement by{};
-    int first_body = 0, first_load = 0, first_joint = 0;
+    int first_body = 0, first_load = 0;
 
     std::string name(const std::string& own) const { return prefix + own; }
     int body(int own) const { return own == world ? world : own + first_body; }
@@ -27,7 +28,8 @@ NamedPoint relocated(NamedPoint point, const Relocation& to);
 Joint relocated(Joint joint, const Relocation& to);
 Load relocated(Load load, const Relocation& to);
 Sensor relocated(Sensor sensor, const Relocation& to);
-/// Throws InputError `event-reaction` for components of reactions where axes turn.
-Event relocated(Event event, const Relocation& to);
+/// `joint`: where a joint of the part is in the model. Throws InputError `event-reaction` for components of
+/// reactions where axes turn.
+Event relocated(Event event, const Relocation& to, const std::function<int(int)>& joint);
 
 }   // namespace gnu::visibility("default")]]livens

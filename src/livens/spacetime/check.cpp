@@ -13,7 +13,7 @@
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/mixed/bases.h"
 #include "livens/spacetime/mixed/window.h"
-#include "livens/spacetime/phases.h"
+#include "livens/spacetime/phases/phases.h"
 #include "livens/spacetime/rotating.h"
 #include "livens/spacetime/solve.h"
 #include "livens/stepping/stepping.h"

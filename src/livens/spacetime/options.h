@@ -52,6 +52,9 @@ struct SolveOptions : SolveResources {
     /// fastest rate; at least the accuracy that is asked for. Farther off would be an impact, which ends the
     /// motion. Infinite: they are moved there, and nothing is said.
     double meeting = 1e-6;
+    /// Bounces lower than this, of the scale of a stop's row, are left out: the stop closes. With an accuracy
+    /// it is a thousandth of that.
+    double lowest_hop = 1e-12;
     bool judge = true;   ///< false: the caller asks estimate() and judge() himself, or does without
     /// What tells the error of the motion, where it is judged.
     enum class Estimate {

@@ -9,9 +9,9 @@
 
 #include "livens/base/text.h"
 #include "livens/dynamics/start/consistent_start.h"
-#include "livens/spacetime/events.h"
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/march/components.h"
+#include "livens/spacetime/phases/events.h"
 #include "livens/spacetime/solve_mesh.h"
 
 namespace livens::inline spacetime_internal {

@@ -22,7 +22,7 @@
 #include "livens/spacetime/accuracy/accuracy.h"
 #include "livens/spacetime/ensemble.h"
 #include "livens/spacetime/found.h"
-#include "livens/spacetime/phases.h"
+#include "livens/spacetime/phases/phases.h"
 #include "livens/spacetime/roots.h"
 #include "livens/spacetime/rotating.h"
 #include "livens/spacetime/solve_mesh.h"

@@ -28,9 +28,25 @@ struct SolvedEvent {
     double t = 0;    ///< s
     /// Estimated, of t (s): that of the second solution differs by so much. nan: not known.
     double error = std::numeric_limits<double>::quiet_NaN();
+    /// Of an impact: what the joint gave along its row, N s or N m s, and the speed with which its bodies
+    /// met. 0: there was none.
+    double impulse = 0, speed = 0;
+    /// Of a stop that begins to hold: when bounces too low to be followed would be over, s. nan: it does not,
+    /// and bodies bounce.
+    double rests_at = std::numeric_limits<double>::quiet_NaN();
 };
 
-struct Solution {
+/// What the motion decided, and what that makes of the model.
+struct Decided {
+    std::vector<SolvedEvent> events{};   ///< in the order of the motion
+    /// From there on (s) the second solution has other events, so that nobody knows these; nan: it has not.
+    double undecided_from = std::numeric_limits<double>::quiet_NaN();
+    /// With joints and loads as events had them begin and end, to which the motion belongs; null: there are
+    /// no events.
+    std::shared_ptr<const Model> decided{};
+};
+
+struct Solution : Decided {
     Motion motion;        ///< up to the last good element end
     Method method;        ///< that was taken: a degree that was left open is chosen
     SolveReport report;   ///< `suspect` if the verdict has reasons; the first of them is its message
@@ -50,12 +66,6 @@ struct Solution {
     /// no value; solve() throws it.
     std::optional<Complaint> cannot_begin{};
     FoundNumbers numbers{};
-    std::vector<SolvedEvent> events{};   ///< in the order of the motion
-    /// From there on (s) the second solution has other events, so that nobody knows these; nan: it has not.
-    double undecided_from = std::numeric_limits<double>::quiet_NaN();
-    /// With joints and loads as events had them begin and end, to which the motion belongs; null: there are
-    /// no events.
-    std::shared_ptr<const Model> decided{};
     /// Where several motions were asked for: the others that were found, by their effort.
     std::vector<Solution> roots{};
     /// Of a model with inertias along coordinates the same with their points, see WithRotors: what estimate()

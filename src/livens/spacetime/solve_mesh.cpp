@@ -17,12 +17,12 @@
 #include "livens/dynamics/start/prepared.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/accuracy/turning_springs.h"
-#include "livens/spacetime/events.h"
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/mixed/window.h"
 #include "livens/spacetime/nodal/unknowns_window.h"
 #include "livens/spacetime/other_motions.h"
+#include "livens/spacetime/phases/events.h"
 #include "livens/spacetime/proposals.h"
 #include "livens/spacetime/unseen_number.h"
 #include "livens/stepping/stepping.h"
@@ -323,7 +323,7 @@ Solution solve_by_steps(const Model& model, const Problem& problem, const TimeMe
         std::holds_alternative<Midpoint>(method) ? SteppingRule::midpoint : SteppingRule::endpoint;
     SteppingResult result = march_stepping(model, start, mesh, rule,
                                            {options.tolerance, options.max_iterations, options.progress});
-    return {std::move(result.motion), method, std::move(result.report)};
+    return {{}, std::move(result.motion), method, std::move(result.report)};
 }
 
 }   // namespace

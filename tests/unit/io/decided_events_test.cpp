@@ -46,21 +46,22 @@ axis = [0, 1, 0]
 coordinates = [{ joint = "pin", value = -0.5 }]
 
 [time]
-)" + time + "\n" + more;
+)" + time + "\n" +
+           more;
 }
 
 /// From rest at 0.5 rad to where it hangs.
 double quarter_period()
 {
-    const double about_pin = 2 * ((1 + 0.05 * 0.05) / 12 + 0.25), rate = std::sqrt(2 * 9.81 * 0.5 / about_pin);
+    const double about_pin = 2 * ((1 + 0.05 * 0.05) / 12 + 0.25),
+                 rate = std::sqrt(2 * 9.81 * 0.5 / about_pin);
     return std::comp_ellint_1(std::sin(0.25)) / rate;
 }
 
 TEST(DecidedEvents, EndTheMotionWhereACoordinateIs)
 {
     for (const char* how : {"accuracy = 1e-11", "elements = 40"}) {
-        const SolvedScenario s =
-            solved(pendulum(std::string("end = 5\nuntil = \"pin.angle > 0\"\n") + how));
+        const SolvedScenario s = solved(pendulum(std::string("end = 5\nuntil = \"pin.angle > 0\"\n") + how));
         const Solution& solution = s.solution;
         ASSERT_TRUE(solution.report.converged()) << solution.report.message;
         ASSERT_EQ(solution.events.size(), 1u);
@@ -136,13 +137,15 @@ type = "point_in_plane"
 between = ["world", "door"]
 at = [1, 0, 0]
 axis = [0, 1, 0]
-)" + latch + R"(
+)" + latch +
+           R"(
 [[load]]
 name = "push"
 type = "actuator"
 joint = "hinge"
 expression = "100*t"
-)" + until + R"(
+)" + until +
+           R"(
 [time]
 end = 2
 accuracy = 1e-10

@@ -147,6 +147,7 @@ const std::set<std::string_view> without{
     "sensor-empty",
     "attraction-mu",
     "start-size",
+    "stop-restitution",
     "time-elements",
     "time-out-of-range",
     "time-outside",

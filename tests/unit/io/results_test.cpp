@@ -59,6 +59,10 @@ TEST_F(Results, RunComesBackToTheBit)
     EXPECT_EQ(back.events.names, run.events.names);
     EXPECT_EQ(back.events.times, run.events.times);
     EXPECT_EQ(back.events.errors, run.events.errors);
+    EXPECT_EQ(back.events.impulses, run.events.impulses);
+    EXPECT_EQ(back.events.speeds, run.events.speeds);
+    EXPECT_EQ(back.motion.impacts.ends, run.motion.impacts.ends);
+    EXPECT_EQ(back.motion.impacts.velocities, run.motion.impacts.velocities);
     EXPECT_EQ(back.numbers.names, run.numbers.names);
     EXPECT_EQ(back.numbers.values, run.numbers.values);
     EXPECT_EQ(back.numbers.errors, run.numbers.errors);
@@ -192,7 +196,7 @@ TEST_F(Results, EveryMemberOfARunIsInTheFile)
 {
     static_assert(n_members<PartNames>() == 5);
     static_assert(n_members<RunFile>() == 16);   // one for its base
-    [[maybe_unused]] const auto& [e1, e2, e3, e4, e5] = EndValues{};
+    [[maybe_unused]] const auto& [e1, e2, e3, e4, e5, e6] = EndValues{};
     [[maybe_unused]] const auto& [d1, d2, d3, d4, d5, d6] = Discretisation{};
     [[maybe_unused]] const auto& [f1, f2, f3, f4, f5, f6] = Field{};
     int report = 0, verdict = 0, balance = 0;

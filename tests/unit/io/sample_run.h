@@ -185,6 +185,11 @@ inline void fill_motion(Motion& m, const Model& model, int n_elements)
     m.rigidity = {12, 1, false, {}, {}};
     for (int i = 0; i < 24 * n_elements; ++i) m.rigidity.values.push_back(0.5 * i);
     m.gauss_points = 3;
+    if (n_elements > 1) m.impacts.ends = {1};
+    for (int b = 0; n_elements > 1 && b < 2; ++b) {
+        m.impacts.momenta.push_back(momentum(0.25, b));
+        m.impacts.velocities.push_back(Matrix34{1, 2, 3});
+    }
     for (int e = 0; e <= n_elements; e += 2) m.block_ends.push_back(e);
 }
 
@@ -236,7 +241,7 @@ inline RunFile sample_run(const Model& model, int n_elements = 8)
     v.balance.largest_moment = std::numeric_limits<double>::denorm_min();
     v.growth = 1e12;
     v.horizon = 2;
-    run.events = {{"latch.until", "top"}, {0.25, 0.5}, {3e-12, 0}};
+    run.events = {{"latch.until", "top"}, {0.25, 0.5}, {3e-12, 0}, {0, 2}, {0, 3}, {std::nan(""), 0.5}};
     run.numbers = {{"friction.damping", "time.end"}, {0.25, 1.5}, {3e-12, 1e-15}};
     for (int i = 0; i <= n_elements; ++i) run.growth.push_back(std::pow(1e12, i / double(n_elements)));
     ErrorEstimate& e = run.estimate;

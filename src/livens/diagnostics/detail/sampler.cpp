@@ -234,10 +234,14 @@ void positions_before_end(const Motion& motion, int end, std::span<Matrix34> X)
     unstack(motion.X.coefficient(end - 1, motion.X.degree), X);
 }
 
-std::span<const Matrix34> velocities_at_end(const Motion& motion, int end)
+std::span<const Matrix34> velocities_at_end(const Motion& motion, int end, Side side)
 {
     const std::size_t n = static_cast<std::size_t>(motion.n_bodies);
     assert(motion.velocities.size() == motion.mesh.ends.size() * n);
+    const int impact = side == Side::left ? motion.impacts.at(end) : -1;
+    if (impact >= 0)
+        return std::span<const Matrix34>(motion.impacts.velocities)
+            .subspan(static_cast<std::size_t>(impact) * n, n);
     return std::span<const Matrix34>(motion.velocities).subspan(static_cast<std::size_t>(end) * n, n);
 }
 

@@ -101,6 +101,6 @@ private:
 void positions_at_end(const Motion& motion, int end, std::span<Matrix34> X);
 void positions_before_end(const Motion& motion, int end, std::span<Matrix34> X);
 /// V of all bodies there, from the momentum.
-std::span<const Matrix34> velocities_at_end(const Motion& motion, int end);
+std::span<const Matrix34> velocities_at_end(const Motion& motion, int end, Side side = Side::right);
 
 }   // namespace livens::inline diagnostics_internal

@@ -56,6 +56,13 @@ bool SettledInstant::accelerate(const State& state, const std::vector<double>& a
     return true;
 }
 
+std::vector<double> SettledInstant::response_to(const std::vector<double>& raw)
+{
+    std::vector<double> twists(solved_.velocity.size());
+    system_.respond(solved_, raw.data(), twists.data());
+    return twists;
+}
+
 std::vector<int> most_rows(const Model& model, std::span<const State> places)
 {
     std::vector<int> most;

@@ -21,6 +21,9 @@ public:
     /// who ask for one thing of a state ask for another.
     bool accelerate(const State& state, const std::vector<double>& angles, Side side);
 
+    /// Twists by which impulses, 12 numbers a body, change those of a state that is settled.
+    std::vector<double> response_to(const std::vector<double>& raw);
+
     const ModelTables& tables() const { return tables_; }
     const InstantSystem& system() const { return system_; }
     const InstantState& solved() const { return solved_; }

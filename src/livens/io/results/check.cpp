@@ -72,6 +72,12 @@ void check_motion(const Motion& m)
     require(m.velocities.size() == ends * bodies, "the number of velocities at element ends");
     require(m.accelerations.empty() || m.accelerations.size() == 2 * ends * bodies,
             "the number of accelerations at element ends");
+    for (std::size_t k = 0; k < m.impacts.ends.size(); ++k)
+        require(m.impacts.ends[k] > (k == 0 ? 0 : m.impacts.ends[k - 1]) &&
+                    m.impacts.ends[k] < m.n_elements(),
+                "impacts at element ends, in order");
+    for (const auto* before : {&m.impacts.momenta, &m.impacts.velocities})
+        require(before->size() == m.impacts.ends.size() * bodies, "the number of velocities before impacts");
     require(m.load_angles.size() % ends == 0, "angles of loads at all element ends");
     require(m.end_multipliers.empty() || m.end_multipliers.size() == 2 * ends * rows,
             "the number of multipliers at element ends");
@@ -102,7 +108,8 @@ void check_run(const Run& run)
     check_estimate(run.estimate, run.motion.mesh.ends.size());
     require(run.growth.empty() || run.growth.size() == run.motion.mesh.ends.size(),
             "the number of growths at element ends");
-    for (const auto* of_events : {&run.events.times, &run.events.errors})
+    for (const auto* of_events :
+         {&run.events.times, &run.events.errors, &run.events.impulses, &run.events.speeds, &run.events.rests})
         require(of_events->size() == run.events.names.size(), "the number of events");
     for (const auto* of_numbers : {&run.numbers.values, &run.numbers.errors})
         require(of_numbers->size() == run.numbers.names.size(), "the number of unknown numbers");

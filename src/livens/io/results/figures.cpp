@@ -200,12 +200,14 @@ void write_events(JsonWriter& json, const Run& run)
 {
     if (run.events.names.empty()) return;
     json.key("events").begin_array();
-    for (std::size_t k = 0; k < run.events.names.size(); ++k)
-        json.begin_object()
-            .member("name", run.events.names[k])
-            .member("t", run.events.times[k])
-            .member("error", run.events.errors[k])
-            .end_object();
+    const RunEvents& all = run.events;
+    for (std::size_t k = 0; k < all.names.size(); ++k) {
+        json.begin_object();
+        json.member("name", all.names[k]).member("t", all.times[k]).member("error", all.errors[k]);
+        if (all.speeds[k] > 0) json.member("impulse", all.impulses[k]).member("speed", all.speeds[k]);
+        if (!std::isnan(all.rests[k])) json.member("rests_at", all.rests[k]);
+        json.end_object();
+    }
     json.end_array();
 }
 

@@ -81,6 +81,17 @@ void visit_head(Archive& archive, AnyRun& run)
     archive.list({"event_time", {"event"}, "s", "none", "when"}, run.events.times);
     archive.list({"event_error", {"event"}, "s", "none", "estimated, of the instants; nan: not known"},
                  run.events.errors);
+    archive.list(
+        {"event_impulse", {"event"}, "mixed", "none", "of impacts, along the row of the stop; 0: none"},
+        run.events.impulses);
+    archive.list({"event_speed", {"event"}, "mixed", "none", "with which bodies met, at impacts; 0: none"},
+                 run.events.speeds);
+    archive.list({"event_rest",
+                  {"event"},
+                  "s",
+                  "none",
+                  "of stops that close: when bounces too low to be followed would be over; nan: they do not"},
+                 run.events.rests);
     archive.text("options", "all options after defaults, JSON", run.resolved);
 }
 
@@ -136,6 +147,11 @@ void visit_motion(Archive& archive, AnyMotion& m)
     at_ends("end_momentum", ends, of_P, "tangent momentum X' m at the element ends", m.momenta);
     at_ends("end_velocity", ends, "m s-1, s-1, s-1, s-1", "dX/dt at the element ends, from the momentum",
             m.velocities);
+    indices("impact_end", "element ends, from 0, where velocities change by an impact", m.impacts.ends);
+    const Names impacts{"impact_end", "body", "column", "xyz"};
+    at_ends("impact_momentum", impacts, of_P, "momenta before the impacts", m.impacts.momenta);
+    at_ends("impact_velocity", impacts, "m s-1, s-1, s-1, s-1", "dX/dt before the impacts",
+            m.impacts.velocities);
     at_ends("end_acceleration", sides, "m s-2, s-2, s-2, s-2",
             "d2X/dt2 at the element ends, from the left and from the right", m.accelerations);
     archive.list({"end_multiplier",

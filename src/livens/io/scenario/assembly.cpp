@@ -184,6 +184,7 @@ void Assembly::read_all_drives()
                 builder_.model().add_joint(relocated(all[j], part.to_));
         });
     read_drives(builder_);
+    read_stops(builder_);
 }
 
 void Assembly::read_all_sensors(bool of_loads)
@@ -217,9 +218,12 @@ void Assembly::read_all_events(bool is_run)
 {
     each_part([](Assembly& part) { part.read_all_events(false); },
               [&](Assembly& part) {
-                  part.to_.first_joint = part.first_joint_;
-                  for (const Event& event : part.builder_.model().events())
-                      builder_.model().add_event(relocated(event, part.to_));
+                  const Model& own = part.builder_.model();
+                  const auto joint = [&](int j) {   // drives and stops stand behind all joints
+                      return builder_.model().find_joint(part.to_.name(own.joints()[j].name));
+                  };
+                  for (const Event& event : own.events())
+                      builder_.model().add_event(relocated(event, part.to_, joint));
               });
     read_events(builder_, is_run);
 }

@@ -114,12 +114,41 @@ bool Neighbour::go_on(NeighbourElements& elements, const BesideLimits& limits, c
 
 bool Neighbour::has_end(int end) const
 {
-    return !states_.empty() || std::ranges::binary_search(motion_.mesh.ends, beside_.mesh.ends[end]);
+    if (!states_.empty()) return true;
+    const double t = beside_.mesh.ends[end];
+    // Among impacts that follow each other faster than it has them earlier or later it is not beside it.
+    if (beside_.impacts.at(end) >= 0 && near_impact(end) < 0) return false;
+    return std::ranges::binary_search(motion_.mesh.ends, t);
 }
 
 State Neighbour::at_end(int end) const
 {
-    return states_.empty() ? motion_.at(beside_.mesh.ends[end]) : states_[end - first_];
+    if (!states_.empty()) return states_[end - first_];
+    const double t = beside_.mesh.ends[end];
+    const int impact = beside_.impacts.at(end) >= 0 ? near_impact(end) : -1;
+    if (impact < 0) return motion_.at(t);
+    // Behind impacts both are compared, though one of them has it later.
+    State state = motion_.at_end(impact);
+    for (std::size_t b = 0; b < state.X.size(); ++b) state.X[b] += (t - state.t) * state.V[b];
+    state.t = t;
+    return state;
+}
+
+/// Its element end with the impact that is nearest to one of the motion; -1: none is within a part of the
+/// elements beside it.
+int Neighbour::near_impact(int end) const
+{
+    const TimeMesh& mesh = beside_.mesh;
+    const double t = mesh.ends[end], length = std::min(mesh.length(end - 1), mesh.length(end));
+    int nearest = -1;
+    double least = 0.1 * length;
+    for (const int own : motion_.impacts.ends) {
+        const double apart = std::abs(motion_.mesh.ends[own] - t);
+        if (apart >= least) continue;
+        least = apart;
+        nearest = own;
+    }
+    return nearest;
 }
 
 Difference Neighbour::apart_from(const State& other, int end, double share) const

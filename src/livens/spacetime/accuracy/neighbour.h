@@ -37,6 +37,7 @@ public:
     /// Whether it has an element end where the motion has this one, and its state there.
     bool has_end(int end) const;
     State at_end(int end) const;
+    int near_impact(int end) const;
     /// A share of how far it is from a state there.
     Difference apart_from(const State& other, int end, double share) const;
 

@@ -157,7 +157,9 @@ double Neighbours::left() const
 /// The first motion tells how far it is to go before it is too far from the one between them.
 int Neighbours::solve_from(int first)
 {
-    const int last = std::min(first + way_.length, motion().n_elements());
+    int last = std::min(first + way_.length, motion().n_elements());
+    while (last < motion().n_elements() && motion().impacts.at(last) >= 0)
+        ++last;   // see Neighbour::has_end()
     if (elements_) {
         const int reached = go_through(first, last);
         if (reached > first) return reached;

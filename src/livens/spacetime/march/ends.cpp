@@ -5,8 +5,8 @@
 
 #include "livens/dynamics/start/prepared.h"
 #include "livens/dynamics/start/singular.h"
-#include "livens/spacetime/events.h"
 #include "livens/spacetime/march/components.h"
+#include "livens/spacetime/phases/events.h"
 
 namespace livens::inline spacetime_internal {
 

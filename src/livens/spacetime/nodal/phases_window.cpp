@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "livens/base/error.h"
-#include "livens/spacetime/events.h"
+#include "livens/spacetime/phases/events.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -101,7 +101,7 @@ AcceptedElements PhasesWindow::close(const AcceptanceCriteria& criteria, SolveRe
         if (!is_whole) break;
         Motion part = phase->window.take_motion();
         widen(part, *model_, phase->acting);
-        join(motion_, std::move(part));
+        join(motion_, std::move(part), false);
     }
     return all;
 }

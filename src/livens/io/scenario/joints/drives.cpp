@@ -326,6 +326,7 @@ void read_times(Builder& builder, const Section& section, Joint& joint)
     if (has_number(section, "from")) joint.from = section.number("from");
     if (has_number(section, "until")) joint.until = section.number("until");
     joint.is_begun_by_event = !condition_of(section, "from").empty();
+    if (section.takes("restitution") && section.has("restitution")) joint.impact = ImpactLaw{};
     joint.is_ended_by_event = !condition_of(section, "until").empty();
     if (joint.is_decided_by_events()) builder.conditions().push_back({false, joint.name, &section});
     if (time == nullptr) return;

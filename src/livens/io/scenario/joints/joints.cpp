@@ -335,7 +335,12 @@ Table joint_table()
          Key{"until", types::number_or_condition,
              "Time of release, or a condition such as `\"latch.force > 80 N\"`: velocities continue, the "
              "reaction ends. Default: never. lobatto and radau only.",
-             "s"}}}
+             "s"},
+         Key{"restitution", types::number,
+             "0: the joint may begin to act where bodies move otherwise than it lets them; velocities change "
+             "at once, by an impact. Default: they have to meet.",
+             ""}
+             .within({0, 0})}}
         .with_kinds("type", std::move(all));
 }
 

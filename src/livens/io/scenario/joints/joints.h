@@ -55,6 +55,7 @@ void read_rope(Builder& builder, const Section& section, const std::string& name
 // Each reports all it finds.
 void read_joints(Builder& builder);
 void read_drives(Builder& builder);   ///< after the joints
+void read_stops(Builder& builder);    ///< after both
 /// Those of loads follow the loads, whose expressions may read the others.
 void read_sensors(Builder& builder, bool of_loads);
 

@@ -14,7 +14,8 @@ namespace livens::inline io_internal {
 
 namespace {
 
-constexpr std::string_view copied_kinds[] = {"body", "point", "include", "joint", "drive", "load", "sensor"};
+constexpr std::string_view copied_kinds[] = {"body",  "point", "include", "joint",
+                                             "drive", "stop",  "load",    "sensor"};
 
 bool continues_word(char c) { return is_plain_name("_" + std::string(1, c)); }
 

@@ -81,6 +81,7 @@ Table repeat_table()
          Key{"include", types::templates, "Repeated includes: `[[repeat.include]]`."},
          Key{"joint", types::templates, "Repeated joints: `[[repeat.joint]]`."},
          Key{"drive", types::templates, "Repeated drives: `[[repeat.drive]]`."},
+         Key{"stop", types::templates, "Repeated stops: `[[repeat.stop]]`."},
          Key{"load", types::templates, "Repeated loads: `[[repeat.load]]`."},
          Key{"sensor", types::templates, "Repeated sensors: `[[repeat.sensor]]`."}}};
 }
@@ -128,6 +129,9 @@ const Table& root_table()
          Key{"drive", types::tables,
              "Prescribed motions: joint coordinates, distances or points as functions of time."}
              .holding(drive_table()),
+         Key{"stop", types::tables,
+             "Limits that nothing passes, of joint coordinates and distances, with impacts."}
+             .holding(stop_table()),
          Key{"load", types::tables, "Forces, torques, springs and dampers."}.holding(load_table()),
          Key{"event", types::tables, "Conditions of the motion that are reported, or end it."}.holding(
              event_table()),

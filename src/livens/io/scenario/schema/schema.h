@@ -189,6 +189,7 @@ Table body_table();
 Table world_table();
 Table joint_table();
 Table drive_table();
+Table stop_table();
 Table load_table();
 Table event_table();
 Table sensor_table();

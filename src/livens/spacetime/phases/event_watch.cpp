@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the motion decides is asked of states at element ends, which have the order of the method, and never
 // of the polynomials between them: docs/theory.md, "Events".
-#include "livens/spacetime/event_watch.h"
+#include "livens/spacetime/phases/event_watch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +19,12 @@ namespace {
 
 /// Of an element: so far behind an instant a condition has changed that changes there.
 constexpr double behind = 1e-6;
+/// Of the scale of its row: what leaves a stop, or slides along it, is beyond it by rounding.
+constexpr double slack = 1e-14;
+/// Of an element: so far ahead the state has what the polynomial has at its end.
+constexpr double at_once = 0.05;
+/// Of an element: between which rates are differences; and of these what rounding may be.
+constexpr double rate_ways[] = {1e-4, 1e-2}, rounded = 1e-13;
 
 std::vector<double> numbers_of(const std::vector<Matrix34>& all)
 {
@@ -81,6 +87,17 @@ EventWatch::EventWatch(const Model& model, ActingModel acting, std::vector<bool>
         while (
             std::ranges::any_of(acting_.model.loads(), [&](const Load& l) { return l.name == watch.name; }))
             watch.name += "'";
+        const int e = static_cast<int>(acting_.model.loads().size()) - first_watch_;
+        slack_.push_back(is_open_stop(e) ? slack * whole_.joints()[event.action.joint].rows[0].scale : 0);
+        if (slack_[e] > 0)
+            watch.guarded = [exact = watch.guarded, by = slack_[e]](const LoadArguments& at,
+                                                                    std::span<double> out) {
+                exact(at, out);
+                out[0] -= by;
+            };
+        // Where nothing would happen nothing is looked for: what a closed stop holds is near its border
+        // always.
+        if (!armed_[e]) watch.guards.clear();
         acting_.model.add_load(std::move(watch));
     }
     loads_ = std::make_unique<LoadTables>(acting_.model);
@@ -111,6 +128,10 @@ std::function<void(const LoadArguments&, std::span<double>)> EventWatch::reactio
             if (j == joints.end() || !is_known) continue;
             const int index = static_cast<int>(j - joints.begin());
             const double* multiplier = mechanism->multipliers(side).data() + model->first_row(index);
+            if (inputs[k].is_multiplier) {
+                numbers[k] = *multiplier;
+                continue;
+            }
             const Joint& joint = model->joints()[static_cast<std::size_t>(index)];
             Matrix34 F{};
             for (const ConstraintRow& row : joint.rows)
@@ -124,11 +145,31 @@ std::function<void(const LoadArguments&, std::span<double>)> EventWatch::reactio
 std::vector<double> EventWatch::terms_at(int event, const State& state) const
 {
     const Load& watch = acting_.model.loads()[first_watch_ + event];
-    std::vector<double> angles = state.angles, terms(watch.guards.size());
+    std::vector<double> angles = state.angles,
+                        terms(static_cast<std::size_t>(
+                            whole_.events()[static_cast<std::size_t>(event)].terms.n_terms));
     const std::vector<double> X = numbers_of(state.X), V = numbers_of(state.V);
     if (!angles.empty()) loads_->turns.follow(Configurations(X.data()), angles);
     watch.guarded(loads_->arguments(first_watch_ + event, {state.t}, X.data(), V.data(), angles), terms);
+    if (slack_[event] > 0) terms[0] += slack_[event];
     return terms;
+}
+
+double EventWatch::margin(int event, const State& state) const
+{
+    const std::vector<double> terms = terms_at(event, state);
+    double margin = -std::numeric_limits<double>::infinity();
+    for (const std::vector<int>& all : whole_.events()[static_cast<std::size_t>(event)].terms.when) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const int k : all) least = std::min(least, terms[static_cast<std::size_t>(k)]);
+        margin = std::max(margin, least);
+    }
+    return margin;
+}
+
+void EventWatch::follow(const std::vector<Matrix34>& X, std::vector<double>& angles) const
+{
+    if (!angles.empty()) loads_->turns.follow(Configurations(X), angles);
 }
 
 bool EventWatch::holds_at(int event, const State& state) const
@@ -136,8 +177,9 @@ bool EventWatch::holds_at(int event, const State& state) const
     return holds(whole_.events()[static_cast<std::size_t>(event)], terms_at(event, state));
 }
 
-/// Somewhat behind an element end: by its state, and by how the polynomial beside it bends.
-State EventWatch::beside(const Motion& motion, int end, double share) const
+/// Somewhat behind an element end: by its state, and by how the polynomial beside it bends. Of `by_slope` the
+/// rates are those of the polynomial at the end of the element.
+State EventWatch::beside(const Motion& motion, int end, double share, bool by_slope) const
 {
     const int element = std::max(end - 1, 0);
     const double h = motion.mesh.length(element), s = end > 0 ? 1 : 0;
@@ -147,10 +189,19 @@ State EventWatch::beside(const Motion& motion, int end, double share) const
     motion.X.evaluate(element, s + share, 1, there);
     state.t += share * h;
     for (std::size_t b = 0; b < state.X.size(); ++b) {
+        if (by_slope)
+            for (std::size_t i = 0; i < 12; ++i) state.V[b].a[i] = here[12 * b + i] / h;
         state.X[b] += share * h * state.V[b];
         for (std::size_t i = 0; i < 12; ++i) state.V[b].a[i] += (there[12 * b + i] - here[12 * b + i]) / h;
     }
     return state;
+}
+
+bool EventWatch::is_open_stop(int event) const
+{
+    const EventAction& action = whole_.events()[static_cast<std::size_t>(event)].action;
+    return armed_[event] && action.does == EventAction::Does::begin && action.joint >= 0 &&
+           whole_.joints()[action.joint].impact && whole_.joints()[action.joint].impact->open_side != 0;
 }
 
 std::vector<int> EventWatch::fired(const Motion& so_far)
@@ -159,40 +210,56 @@ std::vector<int> EventWatch::fired(const Motion& so_far)
     std::vector<int> found;
     if (n == 0) return found;
     if (held_.empty()) {
-        const State start = beside(so_far, 0, behind);
-        for (int e = 0; e < n_events; ++e) held_.push_back(holds_at(e, start));
+        const State start = beside(so_far, 0, behind, false);
+        // What is open has not been met yet, though rounding may have it beyond the stop it has just left.
+        for (int e = 0; e < n_events; ++e) held_.push_back(!is_open_stop(e) && holds_at(e, start));
     }
-    const State now = beside(so_far, n, behind);
+    const State now = beside(so_far, n, behind, false), by_slope = beside(so_far, n, behind, true);
     for (int e = 0; e < n_events; ++e) {
-        const bool holds_now = holds_at(e, now);
-        if (holds_now && !held_[e] && armed_[e]) found.push_back(e);
+        const bool holds_now = slack_[e] > 0 ? margin(e, now) > slack_[e] : holds_at(e, now);
+        // The polynomial has it, the state will: its zero lies in the jump between both.
+        const bool comes =
+            !holds_now && !held_[e] && armed_[e] && holds_at(e, by_slope) && comes_at_once(so_far, e);
+        if ((holds_now && !held_[e] && armed_[e]) || comes) found.push_back(e);
         held_[e] = holds_now;
     }
     return found;
 }
 
-double EventWatch::lateness(const Motion& motion, const std::vector<int>& fired) const
+bool EventWatch::comes_at_once(const Motion& motion, int event) const
 {
-    const int n = motion.n_elements();
-    const State end = motion.at_end(n), later = beside(motion, n, behind);
-    constexpr double none = std::numeric_limits<double>::infinity();
-    double latest = -none;
-    for (const int e : fired) {
-        const std::vector<double> before = terms_at(e, end), after = terms_at(e, later);
-        double nearest = none;   // of its terms: the one that has just become true
-        for (std::size_t k = 0; k < before.size(); ++k) {
-            const double rate = (after[k] - before[k]) / (later.t - end.t);
-            if (!(after[k] > 0 && rate > 0)) continue;
-            if (std::abs(before[k] / rate) < std::abs(nearest)) nearest = before[k] / rate;
-        }
-        if (std::abs(nearest) < 0.5 * motion.mesh.length(n - 1)) latest = std::max(latest, nearest);
-    }
-    return latest > -none ? latest : 0;
+    const Border border = border_of(motion, std::span(&event, 1));
+    return border.rate > 0 &&
+           -border.margin < at_once * motion.mesh.length(motion.n_elements() - 1) * border.rate;
 }
 
-bool EventWatch::holds_at_start(const Motion& motion, int event) const
+EventWatch::Border EventWatch::border_of(const Motion& motion, std::span<const int> events) const
 {
-    return holds_at(event, beside(motion, 0, behind));
+    const auto first = [&](const State& state) {
+        double largest = -std::numeric_limits<double>::infinity();
+        for (const int e : events) largest = std::max(largest, margin(e, state));
+        return largest;
+    };
+    const int n = motion.n_elements();
+    const State end = motion.at_end(n);
+    const double here = first(end);
+    double change = 0, way = 0;
+    for (const double share : rate_ways) {   // the nearer one, unless it is but rounding
+        const State later = beside(motion, n, share, false);
+        way = later.t - end.t;
+        change = first(later) - here;
+        if (std::abs(change) > rounded) break;
+    }
+    return {here, change / way};
+}
+
+std::vector<int> EventWatch::holding(const Motion& motion, std::span<const int> events) const
+{
+    const State now = beside(motion, motion.n_elements(), behind, false);
+    std::vector<int> all;
+    for (const int e : events)
+        if (holds_at(e, now)) all.push_back(e);
+    return all;
 }
 
 }   // namespace livens::inline spacetime_internal

@@ -22,7 +22,8 @@ std::vector<double> phase_ends(const Model& model, const Time& time);
 void widen(Motion& motion, const Model& model, const ActingModel& acting);
 /// One motion after the other, which begins where it ended. Where they meet the state is that of the first,
 /// and each has its side of what has two.
-void join(Motion& whole, Motion&& next);
+/// `jumps`: there is an impact between them.
+void join(Motion& whole, Motion&& next, bool jumps);
 
 /// The motion up to its last element but one.
 void drop_last(Motion& motion);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // theory.md, "Drives", Events, says what goes on and what must meet.
-#include "livens/spacetime/events.h"
+#include "livens/spacetime/phases/events.h"
 
 #include <algorithm>
 #include <cmath>
@@ -101,7 +101,7 @@ void widen(Motion& motion, const Model& model, const ActingModel& acting)
     for (int& row : motion.redundant_rows) row = acting.rows[row];
 }
 
-void join(Motion& whole, Motion&& next)
+void join(Motion& whole, Motion&& next, bool jumps)
 {
     if (whole.mesh.ends.empty()) {
         whole = std::move(next);
@@ -109,6 +109,17 @@ void join(Motion& whole, Motion&& next)
     }
     const auto bodies = static_cast<std::size_t>(whole.n_bodies),
                rows = static_cast<std::size_t>(whole.n_rows);
+    if (jumps) {
+        const auto move_last = [bodies](std::vector<Matrix34>& of_whole, const std::vector<Matrix34>& of_next,
+                                        std::vector<Matrix34>& before) {
+            const auto last = of_whole.end() - static_cast<std::ptrdiff_t>(bodies);
+            before.insert(before.end(), last, of_whole.end());
+            std::copy_n(of_next.begin(), bodies, last);
+        };
+        whole.impacts.ends.push_back(whole.n_elements());
+        move_last(whole.momenta, next.momenta, whole.impacts.momenta);
+        move_last(whole.velocities, next.velocities, whole.impacts.velocities);
+    }
     append_from(whole.mesh.ends, next.mesh.ends, 1);
     append_from(whole.mesh.required, next.mesh.required, 0);
     append_from(whole.mesh.bends, next.mesh.bends, 0);
@@ -156,8 +167,12 @@ ActivationMismatch activation_mismatch(const Model& model, const Motion& motion,
 {
     ActivationMismatch miss;
     const double t = motion.mesh.ends[end], gap = nearest_ends * (motion.end() - motion.start());
-    const bool begins =
-        std::ranges::any_of(model.joints(), [&](const Joint& joint) { return joint.begins_near(t, gap); });
+    bool begins = false, is_impact = false;
+    for (const Joint& joint : model.joints()) {
+        if (!joint.begins_near(t, gap)) continue;
+        begins = true;
+        is_impact = is_impact || joint.impact;
+    }
     if (!begins) return miss;
     const State state = motion.at_end(end);
     // Just behind the event: the joints that begin are there, those that end are not.
@@ -170,6 +185,7 @@ ActivationMismatch activation_mismatch(const Model& model, const Motion& motion,
         const Matrix34 dX = closed.X[b] - state.X[b], dV = closed.V[b] - state.V[b];
         raise_to(miss.shift, norm(dX.column(0)) / model.length());
         raise_to(miss.turn, norm(directors(dX)) / std::numbers::sqrt2);
+        if (is_impact) continue;   // it changes velocities
         raise_to(miss.speed, norm(dV.column(0)) / model.length());
         raise_to(miss.spin, norm(directors(dV)) / std::numbers::sqrt2);
     }
@@ -203,8 +219,9 @@ bool is_met(const Model& model, const Motion& motion, int end, double duration, 
                        " rad, " + to_text(miss.speed * model.length(), 2) + " m/s, " + to_text(miss.spin, 2) +
                        " rad/s"
                  : std::string("no place near fits")) +
-        "): livens knows no impacts; try: a law that meets position and rate there, or shorter elements "
-        "if they are meant to meet";
+        "); try: a restitution of the joint if this is an impact, a law that meets position and rate there, "
+        "or "
+        "shorter elements if they are meant to meet";
     return false;
 }
 

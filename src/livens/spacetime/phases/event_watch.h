@@ -30,15 +30,26 @@ public:
 
     /// Armed events that came true with the last element of a motion that grows by one at a time.
     std::vector<int> fired(const Motion& so_far);
-    /// By how much the end of the motion is too late (s), as states at element ends have it, for what fired
-    /// there first; 0: it is met, or nothing tells.
-    double lateness(const Motion& motion, const std::vector<int>& fired) const;
-    /// Whether the condition of an event holds where the motion has just begun.
-    bool holds_at_start(const Motion& motion, int event) const;
+    /// How far the first of some conditions is from becoming true at the end of a motion, as states at
+    /// element ends have it, and how that goes on behind it (per s).
+    struct Border {
+        double margin, rate;
+    };
+    Border border_of(const Motion& motion, std::span<const int> events) const;
+    /// Those of them that are true just behind the end.
+    std::vector<int> holding(const Motion& motion, std::span<const int> events) const;
+    /// Whether the condition of an event holds in the state where the phase begins.
+    bool holds_now(int event) const { return holds_at(event, start_); }
+    /// How far a condition is from changing in a state, in units of its formulas: positive where it is true.
+    double margin(int event, const State& state) const;
+    /// Angles on the way to a configuration.
+    void follow(const std::vector<Matrix34>& X, std::vector<double>& angles) const;
 
 private:
     std::function<void(const LoadArguments&, std::span<double>)> reactions_of(const Event& event);
-    State beside(const Motion& motion, int end, double share) const;
+    bool is_open_stop(int event) const;
+    State beside(const Motion& motion, int end, double share, bool by_slope) const;
+    bool comes_at_once(const Motion& motion, int event) const;
     std::vector<double> terms_at(int event, const State& state) const;
     bool holds_at(int event, const State& state) const;
 
@@ -50,7 +61,8 @@ private:
     std::shared_ptr<const Model> mechanism_model_;
     std::shared_ptr<SettledInstant> mechanism_;   // null: nothing asks for reactions
     std::unique_ptr<LoadTables> loads_;
-    std::vector<bool> held_;   // of each event, at the last end
+    std::vector<double> slack_;   // of each event: it is looked for so far behind its border, see fired()
+    std::vector<bool> held_;      // of each event, at the last end
 };
 
 }   // namespace livens::inline spacetime_internal

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Impulses of stops are a small linear complementarity problem in what the other joints leave free.
+#include "livens/dynamics/instant/impact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "livens/dynamics/rows/twist.h"
+#include "livens/multibody/unwrapped_angles.h"
+
+namespace livens::inline dynamics_internal {
+
+namespace {
+
+const ConstraintRow& row_of(const Joint& stop) { return stop.rows[0]; }
+
+/// Side times the gradient by each body, and the speed that does not depend on velocities.
+struct Direction {
+    RowGradient gradient;
+    int side;
+    double own_rate;
+
+    Direction(const Joint& stop, const State& state)
+        : gradient(constraint_gradient(row_of(stop), {state.t}, state.X)), side(stop.impact->open_side),
+          own_rate(side * constraint_rate(row_of(stop), {state.t}, state.X))
+    {}
+
+    template <class Rates>
+    double along_each(const Rates& rates_of_body) const
+    {
+        double sum = 0;
+        for (int k = 0; k < gradient.bodies.size; ++k) {
+            const Matrix34 V = rates_of_body(gradient.bodies.bodies[static_cast<std::size_t>(k)]);
+            const Matrix34& g = gradient.by[static_cast<std::size_t>(k)];
+            for (std::size_t i = 0; i < 12; ++i) sum += g.a[i] * V.a[i];
+        }
+        return side * sum;
+    }
+    double along(std::span<const Matrix34> V) const
+    {
+        return along_each([&](int b) { return V[static_cast<std::size_t>(b)]; });
+    }
+    double speed(std::span<const Matrix34> V) const { return own_rate + along(V); }
+    std::vector<double> as_forces(std::size_t n_bodies) const
+    {
+        std::vector<double> raw(12 * n_bodies, 0.0);
+        for (int k = 0; k < gradient.bodies.size; ++k)
+            for (std::size_t i = 0; i < 12; ++i)
+                raw[12 * static_cast<std::size_t>(gradient.bodies.bodies[static_cast<std::size_t>(k)]) + i] =
+                    side * gradient.by[static_cast<std::size_t>(k)].a[i];
+        return raw;
+    }
+};
+
+/// Rates [v, w x d_a] of twists.
+std::vector<Matrix34> rates_of(const ModelTables& tables, const std::vector<double>& X,
+                               const std::vector<double>& twists)
+{
+    std::vector<double> V(X.size());
+    tables.bodies.rates_of(X.data(), twists.data(), V.data());
+    std::vector<Matrix34> all(X.size() / 12);
+    for (std::size_t b = 0; b < all.size(); ++b) std::copy_n(V.begin() + 12 * b, 12, all[b].a);
+    return all;
+}
+
+/// D x = b for the chosen rows, by elimination with pivots on the diagonal, as D is symmetric and positive;
+/// none: it is singular.
+std::optional<std::vector<double>> solved(std::vector<std::vector<double>> D, std::vector<double> b)
+{
+    const std::size_t n = b.size();
+    constexpr double lost = 1e-12;
+    std::vector<double> diagonal(n);
+    for (std::size_t i = 0; i < n; ++i) diagonal[i] = D[i][i];
+    for (std::size_t k = 0; k < n; ++k) {
+        if (!(D[k][k] > lost * diagonal[k])) return {};
+        for (std::size_t i = k + 1; i < n; ++i) {
+            const double factor = D[i][k] / D[k][k];
+            for (std::size_t j = k; j < n; ++j) D[i][j] -= factor * D[k][j];
+            b[i] -= factor * b[k];
+        }
+    }
+    for (std::size_t k = n; k-- > 0;) {
+        for (std::size_t j = k + 1; j < n; ++j) b[k] -= D[k][j] * b[j];
+        b[k] /= D[k][k];
+    }
+    return b;
+}
+
+/// Impulses >= 0 with speeds + D impulses >= least, and one of both zero for each; none: there are none.
+std::optional<std::vector<double>> complementary(const std::vector<std::vector<double>>& D,
+                                                 const std::vector<double>& speeds,
+                                                 const std::vector<double>& least)
+{
+    const std::size_t n = speeds.size();
+    double size = 0;
+    for (std::size_t i = 0; i < n; ++i) size = std::max({size, std::abs(speeds[i]), std::abs(least[i])});
+    const double tolerance = 1e-13 * size;
+    for (std::uint32_t set = 0; set < (1u << n); ++set) {
+        std::vector<std::size_t> active;
+        for (std::size_t i = 0; i < n; ++i)
+            if ((set >> i & 1u) != 0) active.push_back(i);
+        std::vector<std::vector<double>> part(active.size(), std::vector<double>(active.size()));
+        std::vector<double> wanted(active.size());
+        for (std::size_t i = 0; i < active.size(); ++i) {
+            wanted[i] = least[active[i]] - speeds[active[i]];
+            for (std::size_t j = 0; j < active.size(); ++j) part[i][j] = D[active[i]][active[j]];
+        }
+        const std::optional<std::vector<double>> found = solved(std::move(part), std::move(wanted));
+        if (!found) continue;
+        std::vector<double> impulses(n, 0.0);
+        for (std::size_t i = 0; i < active.size(); ++i) impulses[active[i]] = (*found)[i];
+        bool is_good = true;
+        for (std::size_t i = 0; i < n && is_good; ++i) {
+            double speed = speeds[i];
+            for (const std::size_t j : active) speed += D[i][j] * impulses[j];
+            is_good = impulses[i] * D[i][i] >= -tolerance && speed >= least[i] - tolerance;
+        }
+        if (is_good) return impulses;
+    }
+    return {};
+}
+
+}   // namespace
+
+ImpactOutcome impact(const Model& held, const State& before, std::span<const Joint> stops)
+{
+    ImpactOutcome outcome;
+    outcome.stops.resize(stops.size());
+    if (stops.size() > most_stops_at_once) return outcome;
+    SettledInstant instant(held, most_rows(held, std::span(&before, 1)));
+    if (!instant.settle(before)) return outcome;
+    const std::vector<double> X = instant.solved().X;
+    outcome.V = rates_of(instant.tables(), X, instant.solved().velocity);
+    const std::size_t n = stops.size(), n_bodies = outcome.V.size();
+    std::vector<Direction> directions;
+    std::vector<std::vector<Matrix34>> responses;
+    std::vector<double> speeds(n), least(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        directions.emplace_back(stops[i], before);
+        speeds[i] = directions[i].speed(outcome.V);
+        outcome.stops[i].approach = directions[i].speed(before.V);
+        least[i] = stops[i].impact->restitution * std::max(-outcome.stops[i].approach, 0.0);
+        responses.push_back(
+            rates_of(instant.tables(), X, instant.response_to(directions[i].as_forces(n_bodies))));
+    }
+    std::vector<std::vector<double>> D(n, std::vector<double>(n));
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) D[i][j] = directions[i].along(responses[j]);
+    const std::optional<std::vector<double>> impulses = complementary(D, speeds, least);
+    if (!impulses) return outcome;
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t b = 0; b < n_bodies; ++b) outcome.V[b] += (*impulses)[i] * responses[i][b];
+    for (std::size_t i = 0; i < n; ++i) {
+        outcome.stops[i].impulse = (*impulses)[i];
+        // where it gave an impulse as the law has it, without what rounding leaves
+        outcome.stops[i].apart = (*impulses)[i] > 0 ? least[i] : directions[i].speed(outcome.V);
+    }
+    outcome.is_found = true;
+    return outcome;
+}
+
+double speed_apart(const Joint& stop, const State& state) { return Direction(stop, state).speed(state.V); }
+
+double acceleration_apart(const Joint& stop, const Model& held, const State& state)
+{
+    SettledInstant instant(held, most_rows(held, std::span(&state, 1)));
+    std::vector<double> angles = state.angles;
+    angles.resize(UnwrappedAngles(held).size(), 0.0);   // others come behind those of the model's loads
+    if (!instant.accelerate(state, angles, Side::right)) return std::numeric_limits<double>::quiet_NaN();
+    const std::vector<double>& X = instant.solved().X;
+    const std::vector<Matrix34> A = rates_of(instant.tables(), X, instant.solved().acceleration[1]);
+    const double* centripetal = instant.system().centripetal();
+    const Direction direction(stop, state);
+    const double of_bodies = direction.along_each([&](int b) {
+        Matrix34 all = A[static_cast<std::size_t>(b)];
+        for (std::size_t i = 0; i < 12; ++i) all.a[i] += centripetal[12 * static_cast<std::size_t>(b) + i];
+        return all;
+    });
+    return of_bodies + direction.side * constraint_curvature(row_of(stop), {state.t}, state.X, state.V);
+}
+
+double gap_of(const Joint& stop, const State& state)
+{
+    return stop.impact->open_side * constraint_value(row_of(stop), {state.t}, state.X);
+}
+
+}   // namespace livens::inline dynamics_internal

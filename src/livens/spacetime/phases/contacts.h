@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Joints that begin with an impact: what it makes of velocities, and which stops stay closed behind it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "livens/spacetime/phases/decisions.h"
+
+namespace livens::inline spacetime_internal {
+
+/// What one of the joints that begin has done.
+struct Contact {
+    int joint = 0;
+    double impulse = 0, approach = 0;   ///< SolvedEvent::impulse, speed; none: it was not met
+    bool is_hit = false;
+    bool closes = false;   ///< it holds from now on
+    double rests_at = 0;   ///< s, of what closes: when bounces that were left out would be over
+};
+
+struct ContactOutcome {
+    std::vector<Matrix34> V;   ///< of all bodies behind it
+    bool jumps = false;        ///< other than before
+    std::vector<Contact> begun;
+    std::vector<int> opens;   ///< stops that the impact has left behind
+    std::string refused;      ///< why there is none, for people
+};
+
+/// Throws InputError `stop-violated` where a state is beyond a stop.
+void check_stops(const Model& model, const State& start);
+
+/// Joints of a model with ImpactLaw that begin at a state, where what else begins or ends there has been
+/// decided. Hops lower than `lowest_hop` times the row's scale are left out: the stop closes.
+/// (docs/theory.md, "Impacts")
+ContactOutcome meet_joints(const Model& model, const Decisions& decisions, const State& reached,
+                           const std::vector<int>& begins, double lowest_hop);
+
+}   // namespace livens::inline spacetime_internal

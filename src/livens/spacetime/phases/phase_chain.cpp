@@ -1,0 +1,387 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every phase has a model of its own. theory.md, "Drives", Events, says what goes on and what must meet;
+// "Events" and "Impacts" what the motion decides.
+#include "livens/spacetime/phases/phase_chain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/base/text.h"
+#include "livens/dynamics/instant/impact.h"
+#include "livens/solvers/patience.h"
+#include "livens/spacetime/march/window_notes.h"
+#include "livens/spacetime/phases/contacts.h"
+#include "livens/spacetime/phases/event_watch.h"
+#include "livens/spacetime/phases/events.h"
+
+namespace livens::inline spacetime_internal {
+
+namespace {
+
+/// More would be a storm: as many as that in a millionth of the time, or in all.
+constexpr int stormy = 200, most_events = 100'000;
+constexpr double no_time = 1e-6;
+/// Of an element: what is left of one behind an event is no element of its own.
+constexpr double least_rest = 1e-3;
+constexpr int most_turns = 60;
+/// Of the scale of a stop's row, at the start of the motion.
+constexpr double touching_start = 1e-12;
+
+/// From an instant on, until another that it may have as an end.
+Time part_of(const Time& time, double first, double last, double accuracy)
+{
+    const double gap = nearest_ends * (end_of(time) - start_of(time));
+    const auto inside = [&](const std::vector<double>& all) {
+        std::vector<double> some;
+        for (const double t : all)
+            if (t > first + gap && t <= last) some.push_back(t);
+        return some;
+    };
+    const auto* mesh = std::get_if<TimeMesh>(&time);
+    if (mesh == nullptr) return Span{first, last, accuracy, inside(std::get<Span>(time).output)};
+    TimeMesh part{{first}, inside(mesh->required), inside(mesh->bends)};
+    const std::vector<double> ends = inside(mesh->ends);
+    const bool is_end = std::ranges::binary_search(mesh->ends, first);
+    for (const double t : ends) {
+        // Where an event came before a bend that was expected, that has been this event.
+        const std::size_t next =
+            static_cast<std::size_t>(std::ranges::upper_bound(mesh->ends, t) - mesh->ends.begin());
+        const double length = next < mesh->ends.size() ? mesh->ends[next] - t : t - first;
+        const bool is_met = std::ranges::binary_search(mesh->bends, t) && t - first < 0.5 * length;
+        const bool is_rest =
+            t - first < least_rest * length && t < last && !std::ranges::binary_search(mesh->required, t);
+        if (part.ends.size() > 1 || is_end || (!is_met && !is_rest)) part.ends.push_back(t);
+    }
+    std::erase_if(part.bends, [&](double t) { return !std::ranges::binary_search(part.ends, t); });
+    return part;
+}
+
+/// One phase after the other: up to what is known beforehand, or what the motion decides.
+class Chain {
+public:
+    explicit Chain(const PhasedProblem& given)
+        : given_(given.model), stated_(given_.events().empty() ? given_ : as_decided(given_, {})),
+          problem_(given.problem), time_(given.time), options_(given.options),
+          solve_phase_(given.solve_phase), known_(phase_ends(stated_, time_))
+    {
+        options_.judge = false;
+        options_.growth = false;   // of a part from its own start: it says nothing of the whole
+        problem_.fired = nullptr;
+    }
+
+    /// All phases, as far as they go.
+    Solution solve(Method method, double accuracy, double tolerance_of_meeting) const
+    {
+        Solution whole;
+        Way at{problem_, options_, Decisions(given_, start_of(time_)), start_of(time_)};
+        at.method = std::move(method);
+        begin_at_stops(at, whole);
+        while (at.first < known_.back()) {
+            if (at.first > known_.front() &&
+                !is_met(decided(at), whole.motion, whole.motion.n_elements(), known_.back() - known_.front(),
+                        tolerance_of_meeting, whole.report))
+                break;
+            if (!run_phase(at, accuracy, whole)) break;
+        }
+        if (!stated_.events().empty()) whole.decided = std::make_shared<const Model>(decided(at));
+        return whole;
+    }
+
+private:
+    /// Of a motion over phases.
+    struct Way {
+        Problem problem;
+        SolveOptions options;
+        Decisions decisions;
+        double first;   // where the phase begins
+        Method method{};
+        bool jumps = false;   // behind an impact
+    };
+
+    Model decided(const Way& at) const
+    {
+        return stated_.events().empty() ? stated_ : as_decided(stated_, at.decisions.times());
+    }
+
+    /// False: the motion ends, and the report says why, unless an event has ended it.
+    bool run_phase(Way& at, double accuracy, Solution& whole) const
+    {
+        const double last = *std::ranges::upper_bound(known_, at.first);
+        ActingModel acting = acting_at(decided(at), 0.5 * (at.first + last));
+        std::unique_ptr<EventWatch> watch;
+        if (!stated_.events().empty()) {
+            watch = begin_watch(at, last, acting, whole);
+            if (watch == nullptr) return false;
+            at.problem.conditions.start = watch->start();
+            at.problem.fired = [&](const Motion& so_far) { return watch->fired(so_far); };
+        }
+        const Model& model = watch != nullptr ? watch->model() : acting.model;
+        Solution next = solve_next(model, at, last, accuracy);
+        if (at.first > known_.front())
+            for (std::string& note : next.report.notes)
+                if (std::ranges::find(whole.report.notes, note) == whole.report.notes.end())
+                    note = "from " + to_text(at.first, 6) + " s on: " + note;
+        if (next.motion.mesh.ends.empty()) {
+            whole.report += std::move(next.report);
+            whole.cannot_begin = std::move(next.cannot_begin);
+            return false;
+        }
+        std::vector<int> fired = std::exchange(next.report.fired, {});
+        at.method = next.method;   // what was open is chosen once
+        if (watch != nullptr && !fired.empty() && !end_at_event(*watch, at, fired, next)) fired.clear();
+        const double end = next.motion.end();
+        if (next.report.status == SolveStatus::inaccurate && (end == last || !fired.empty())) {
+            next.report.status = SolveStatus::converged;   // the whole is judged, not a part of it
+            next.report.message.clear();
+        }
+        State reached = next.motion.at_end(next.motion.n_elements());   // with angles that events count
+        widen(next.motion, stated_, acting);
+        whole.method = next.method;
+        whole.estimate_seconds += next.estimate_seconds;
+        whole.report += std::move(next.report);
+        join(whole.motion, std::move(next.motion), std::exchange(at.jumps, false));
+        if (!whole.report.converged()) return false;
+        at.first = end;
+        const bool goes_on = act(at, fired, reached, whole);
+        at.problem.conditions.start = std::move(reached);
+        at.options.initial = StartPolicy::project;   // an end state holds its joints to rounding
+        return goes_on;
+    }
+
+    /// Null: reactions are not unique any more, and the report says so.
+    std::unique_ptr<EventWatch> begin_watch(Way& at, double last, ActingModel& acting, Solution& whole) const
+    {
+        try {
+            std::unique_ptr<EventWatch> watch = watch_of(at, acting);
+            while (release_stops(at, *watch, whole)) {
+                acting = acting_at(decided(at), 0.5 * (at.first + last));
+                watch = watch_of(at, acting);
+            }
+            return watch;
+        } catch (const InputError& error) {
+            if (at.first == known_.front()) throw;
+            whole.report.status = SolveStatus::not_converged;
+            whole.report.failed_at = at.first;
+            whole.report.message = "at " + to_text(at.first, 6) + " s " + error.complaint().message +
+                                   "; try: " + error.complaint().help;
+            return nullptr;
+        }
+    }
+
+    /// Stops that would have to pull where a phase begins: false, there is none.
+    bool release_stops(Way& at, const EventWatch& watch, Solution& whole) const
+    {
+        bool is_any = false;
+        for (std::size_t e = 0; e < stated_.events().size(); ++e) {
+            const EventAction& action = stated_.events()[e].action;
+            const bool is_stop = action.does == EventAction::Does::end && action.joint >= 0 &&
+                                 stated_.joints()[action.joint].impact &&
+                                 stated_.joints()[action.joint].impact->open_side != 0;
+            if (!is_stop || !at.decisions.is_armed(action, at.first) || !watch.holds_now(static_cast<int>(e)))
+                continue;
+            at.decisions.act(stated_, action, at.first);
+            whole.events.push_back({static_cast<int>(e), at.first});
+            is_any = true;
+        }
+        return is_any;
+    }
+
+    std::unique_ptr<EventWatch> watch_of(Way& at, const ActingModel& acting) const
+    {
+        std::vector<bool> armed;
+        for (const Event& event : stated_.events()) {
+            const bool is_idle =
+                event.action.does == EventAction::Does::end_motion && !problem_.ends_by_events;
+            armed.push_back(!is_idle && at.decisions.is_armed(event.action, at.first));
+        }
+        return std::make_unique<EventWatch>(stated_, acting, std::move(armed), at.problem.conditions.start);
+    }
+
+    /// A phase that cannot begin leaves what was solved before it.
+    Solution solve_next(const Model& model, const Way& at, double last, double accuracy) const
+    {
+        const Time part = part_of(time_, at.first, last, accuracy);
+        const auto solve = [&] { return solve_phase_(model, at.problem, part, at.method, at.options); };
+        if (at.first == known_.front()) return solve();
+        try {
+            Solution next = solve();
+            if (std::exchange(next.cannot_begin, {}))
+                next.report.message = "behind the event at " + to_text(at.first, 6) +
+                                      " s the motion cannot begin: " + next.report.message;
+            return next;
+        } catch (const Stopped&) {
+            Solution none;
+            none.method = at.method;
+            none.report.failed_at = at.first;
+            none.report.status = SolveStatus::cancelled;
+            none.report.message = of_stop(at.first);
+            return none;
+        }
+    }
+
+    /// The last element is solved anew until the state at its end is where the event is: the slope of its
+    /// polynomial, by which velocities were seen on the way, is of a lower order. False: there is none.
+    bool end_at_event(const EventWatch& watch, const Way& at, std::vector<int>& fired, Solution& next) const
+    {
+        const double start = next.motion.mesh.ends[next.motion.n_elements() - 1], end = next.motion.end();
+        double low = start, high = std::numeric_limits<double>::infinity(), nearest = high;
+        int idle = 0;   // turns that came no nearer: what is left is rounding
+        for (int i = 0; i < most_turns && idle < 3; ++i) {
+            const double now = next.motion.end();
+            const EventWatch::Border border = watch.border_of(next.motion, fired);
+            idle = std::abs(border.margin) < 0.5 * nearest ? 0 : idle + 1;
+            nearest = std::min(nearest, std::abs(border.margin));
+            (border.margin > 0 ? high : low) = now;
+            double zero = border.rate > 0 ? now - border.margin / border.rate : low;
+            if (std::abs(zero - now) <= std::max(1e-13 * (end - start), 4e-16 * std::abs(now))) break;
+            if (std::isinf(high)) {   // it lies ahead, and not far
+                if (!(zero > now && zero < end + 0.1 * (end - start))) return false;
+            } else if (!(zero > low && zero < high)) {
+                zero = 0.5 * (low + high);
+            }
+            if (!(zero > start) || !solve_last(watch.model(), at, start, zero, next)) break;
+        }
+        if (const std::vector<int> now = watch.holding(next.motion, fired); !now.empty()) fired = now;
+        return true;
+    }
+
+    /// The last element once more, with another end. False: it is not found, and all is as it was.
+    bool solve_last(const Model& model, const Way& at, double start, double end, Solution& next) const
+    {
+        Problem problem = at.problem;
+        problem.fired = nullptr;
+        problem.conditions.start = next.motion.at_end(next.motion.n_elements() - 1);
+        SolveOptions options = at.options;
+        options.initial = StartPolicy::project;
+        options.end_at_bends = false;
+        Solution last = solve_phase_(model, problem, TimeMesh{{start, end}}, next.method, options);
+        if (!last.report.converged() || last.motion.n_elements() == 0) return false;
+        drop_last(next.motion);
+        if (next.motion.n_elements() == 0)
+            next.motion = std::move(last.motion);
+        else
+            join(next.motion, std::move(last.motion), false);
+        next.motion.mesh.bends.push_back(next.motion.end());
+        return true;
+    }
+
+    /// What events do to a state. False: the motion ends there.
+    bool act(Way& at, const std::vector<int>& fired, State& reached, Solution& whole) const
+    {
+        bool goes_on = true;
+        std::vector<int> met;   // joints that begin with an impact, and their events
+        for (const int e : fired) {
+            const EventAction& action = stated_.events()[static_cast<std::size_t>(e)].action;
+            if (!at.decisions.is_armed(action, at.first)) continue;   // another one did it
+            if (begun_by_impact(stated_, action) != nullptr) {
+                met.push_back(e);
+                continue;
+            }
+            at.decisions.act(stated_, action, at.first);
+            whole.events.push_back({e, at.first});
+            goes_on = goes_on && action.does != EventAction::Does::end_motion;
+        }
+        if (!goes_on) return false;
+        return meet(at, met, reached, whole) && !is_storm(whole);
+    }
+
+    /// Impacts of joints that these events begin, and of those that begin there as stated.
+    bool meet(Way& at, const std::vector<int>& events, State& reached, Solution& whole) const
+    {
+        std::vector<int> begins;
+        for (const int e : events)
+            begins.push_back(stated_.events()[static_cast<std::size_t>(e)].action.joint);
+        const double gap = nearest_ends * (known_.back() - known_.front());
+        for (int j = 0; j < static_cast<int>(stated_.joints().size()); ++j) {
+            const Joint& joint = stated_.joints()[j];
+            if (joint.impact && !joint.is_begun_by_event && std::abs(joint.from - at.first) <= gap)
+                begins.push_back(j);
+        }
+        if (begins.empty()) return true;
+        ContactOutcome outcome = meet_joints(stated_, at.decisions, reached, begins, options_.lowest_hop);
+        if (!outcome.refused.empty()) {
+            whole.report.status = SolveStatus::not_converged;
+            whole.report.failed_at = at.first;
+            whole.report.message = outcome.refused;
+            return false;
+        }
+        for (std::size_t k = 0; k < events.size(); ++k) tell_contact(at, events[k], outcome, whole);
+        for (const int j : outcome.opens)
+            for (std::size_t e = 0; e < stated_.events().size(); ++e) {
+                const EventAction& action = stated_.events()[e].action;
+                if (action.does != EventAction::Does::end || action.joint != j) continue;
+                at.decisions.act(stated_, action, at.first);
+                whole.events.push_back({static_cast<int>(e), at.first});
+            }
+        reached.V = std::move(outcome.V);
+        at.jumps = outcome.jumps && at.first > known_.front();
+        return true;
+    }
+
+    void tell_contact(Way& at, int event, const ContactOutcome& outcome, Solution& whole) const
+    {
+        const EventAction& action = stated_.events()[static_cast<std::size_t>(event)].action;
+        const auto of = std::ranges::find(outcome.begun, action.joint, &Contact::joint);
+        if (of == outcome.begun.end() || (!of->is_hit && !of->closes)) return;   // it is only touched
+        SolvedEvent one{event, at.first};
+        one.impulse = of->impulse;
+        one.speed = of->approach;
+        if (of->closes) {
+            at.decisions.act(stated_, action, at.first);
+            if (stated_.joints()[action.joint].impact->open_side != 0) one.rests_at = of->rests_at;
+        }
+        whole.events.push_back(one);
+    }
+
+    /// Stops that are touched where the motion begins.
+    void begin_at_stops(Way& at, Solution& whole) const
+    {
+        State& start = at.problem.conditions.start;
+        std::vector<int> touched;
+        for (std::size_t e = 0; e < stated_.events().size(); ++e) {
+            const Joint* stop = begun_by_impact(stated_, stated_.events()[e].action);
+            if (stop == nullptr || stop->impact->open_side == 0) continue;
+            const double gap = gap_of(*stop, start) / stop->rows[0].scale;
+            if (gap <= touching_start) touched.push_back(static_cast<int>(e));
+        }
+        if (!touched.empty()) meet(at, touched, start, whole);
+    }
+
+    bool is_storm(Solution& whole) const
+    {
+        const std::size_t n = whole.events.size();
+        if (n < stormy) return false;
+        const double since = whole.events[n - stormy].t, time = known_.back() - known_.front();
+        if (n < most_events && whole.events.back().t - since > no_time * time) return false;
+        SolveReport& report = whole.report;
+        report.status = SolveStatus::not_converged;
+        report.failed_at = whole.events.back().t;
+        report.message = "events follow each other without an end: " + std::to_string(n) +
+                         " so far, the last of them '" +
+                         stated_.events()[static_cast<std::size_t>(whole.events.back().event)].name +
+                         "' at " + to_text(report.failed_at, 9) +
+                         " s; try: conditions that leave some way between what begins and what ends";
+        return true;
+    }
+
+    const Model& given_;
+    Model stated_;   // as it is before any event
+    Problem problem_;
+    const Time& time_;
+    SolveOptions options_;
+    const SolvePhase& solve_phase_;
+    std::vector<double> known_;   // ends of phases, but for events that the motion decides
+};
+
+}   // namespace
+
+Solution solve_chain(const PhasedProblem& given, const Method& method, double accuracy, double meeting)
+{
+    return Chain(given).solve(method, accuracy, meeting);
+}
+
+}   // namespace livens::inline spacetime_internal

@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Impacts and stops: instants, impulses and rest against closed forms.
+#include <cmath>
+#include <numbers>
+
+#include "livens/io/solve_scenario.h"
+#include "livens/spacetime/solve.h"
+#include "unit/io/scenario_text.h"
+
+namespace livens {
+
+namespace {
+
+using test::find;
+using test::read;
+using test::shown;
+
+SolvedScenario solved(const std::string& text)
+{
+    ScenarioResult result = read(text);
+    EXPECT_TRUE(result.scenario.has_value() && result.diagnostics.empty()) << text << shown(result);
+    const Scenario scenario = result.scenario ? std::move(*result.scenario) : Scenario();
+    return solve_scenario(scenario, scenario.options, scenario.prepared);
+}
+
+std::vector<SolvedEvent> hits_of(const SolvedScenario& s)
+{
+    std::vector<SolvedEvent> hits;
+    for (const SolvedEvent& one : s.solution.events)
+        if (one.speed > 0) hits.push_back(one);
+    return hits;
+}
+
+/// On a guide 1 m above the floor.
+std::string ball(const std::string& stop, const std::string& time)
+{
+    return R"(format = 1
+gravity = [0, 0, -9.81]
+body = [{ name = "ball", shape = { sphere = 0.1 }, mass = 2, position = [0, 0, 1] }]
+
+[[joint]]
+name = "guide"
+type = "prismatic"
+between = ["world", "ball"]
+at = [0, 0, 0]
+axis = [0, 0, 1]
+coordinate = 1
+
+[[stop]]
+name = "floor"
+joint = "guide"
+limits = [0, inf]
+)" + stop + "\n\n[time]\n" +
+           time + "\n";
+}
+
+TEST(Stops, BallComesToRestBehindBouncesWithoutEnd)
+{
+    const SolvedScenario s = solved(ball("restitution = 0.7", "end = 4\naccuracy = 1e-11"));
+    ASSERT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+    const std::vector<SolvedEvent> hits = hits_of(s);
+    ASSERT_GT(hits.size(), 10u);
+    EXPECT_LT(hits.size(), 60u);
+    const double first = std::sqrt(2 / 9.81), speed = std::sqrt(2 * 9.81);
+    double t = first, v = speed;
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+        EXPECT_NEAR(hits[k].t, t, 5e-11) << k;   // places round by 1e-16
+        EXPECT_NEAR(hits[k].speed, v, 1e-9) << k;
+        EXPECT_NEAR(hits[k].impulse, 2 * 1.7 * v, 1e-8) << k;
+        v *= 0.7;
+        t += 2 * v / 9.81;
+    }
+    EXPECT_NEAR(hits.back().rests_at, first * 1.7 / 0.3, 1e-10);
+    const Motion& motion = s.solution.motion;
+    EXPECT_EQ(motion.impacts.ends.size(), hits.size());
+    EXPECT_NEAR(motion.at_end(motion.n_elements()).X[0](2, 0), 0, 1e-11);
+    // on both sides of an impact
+    const int end = motion.impacts.ends[0];
+    EXPECT_NEAR(motion.at_end(end, Side::left).V[0](2, 0), -speed, 1e-9);
+    EXPECT_NEAR(motion.at_end(end).V[0](2, 0), 0.7 * speed, 1e-9);
+    EXPECT_LT(s.solution.estimate.largest, 1e-11);
+}
+
+TEST(Stops, WithoutRestitutionTheyCloseAtOnce)
+{
+    const SolvedScenario s = solved(ball("", "end = 1\naccuracy = 1e-10"));
+    ASSERT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+    const std::vector<SolvedEvent> hits = hits_of(s);
+    ASSERT_EQ(hits.size(), 1u);
+    EXPECT_EQ(hits[0].rests_at, hits[0].t);
+    EXPECT_EQ(s.solution.events.size(), 1u);
+    const Motion& motion = s.solution.motion;
+    EXPECT_NEAR(motion.at_end(motion.n_elements()).X[0](2, 0), 0, 1e-14);
+}
+
+TEST(Stops, OfFullRestitutionLoseNothing)
+{
+    const SolvedScenario s = solved(ball("restitution = 1", "end = 4\naccuracy = 1e-10"));
+    ASSERT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+    const std::vector<SolvedEvent> hits = hits_of(s);
+    const double first = std::sqrt(2 / 9.81);
+    ASSERT_EQ(hits.size(), 4u);
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(hits[k].t, (1 + 2 * double(k)) * first, 1e-10);
+}
+
+/// A rod of 1 m and 2 kg about its end, let go at 1 rad, that meets a buffer where it hangs.
+std::string pendulum(const std::string& time, const std::string& more = "")
+{
+    return R"(format = 1
+gravity = [0, 0, -9.81]
+body = [{ name = "rod", shape = { box = [0.05, 0.05, 1] }, mass = 2, position = [0, 0, -0.5] }]
+
+[[joint]]
+name = "pin"
+type = "revolute"
+between = ["world", "rod"]
+at = [0, 0, 0]
+axis = [0, 1, 0]
+
+[start]
+coordinates = [{ joint = "pin", value = -1 }]
+
+[[stop]]
+name = "buffer"
+joint = "pin"
+limits = ["-inf", "0 deg"]
+restitution = 0.8
+
+[time]
+)" + time + "\n" +
+           more;
+}
+
+/// Instants of impacts: a swing from the angle b takes K(sin b/2) / rate to the bottom, and behind an impact
+/// the angle is that whose speed there is e times the one before: sin(b'/2) = e sin(b/2).
+std::vector<double> buffer_hits(int n)
+{
+    const double about_pin = 2 * ((1 + 0.05 * 0.05) / 12 + 0.25),
+                 rate = std::sqrt(2 * 9.81 * 0.5 / about_pin);
+    double k = std::sin(0.5), t = std::comp_ellint_1(k) / rate;
+    std::vector<double> all{t};
+    while (static_cast<int>(all.size()) < n) {
+        k *= 0.8;
+        t += 2 * std::comp_ellint_1(k) / rate;
+        all.push_back(t);
+    }
+    return all;
+}
+
+TEST(Stops, PendulumMeetsABufferWhenEllipticIntegralsSay)
+{
+    const SolvedScenario s = solved(pendulum("end = 3.2\naccuracy = 1e-11"));
+    ASSERT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+    const std::vector<SolvedEvent> hits = hits_of(s);
+    const std::vector<double> truth = buffer_hits(4);
+    ASSERT_GE(hits.size(), 4u);
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(hits[k].t, truth[k], 1e-12) << k;
+}
+
+class OrdersOfImpacts : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Degrees, OrdersOfImpacts, testing::Values(2, 3, 4, 5, 6));
+
+/// Four impacts, elements halved: errors fall by 2^2p, and are told.
+TEST_P(OrdersOfImpacts, AreThoseOfTheMethod)
+{
+    const int p = GetParam();
+    const std::vector<double> truth = buffer_hits(4);
+    const double end = truth[3] + 0.3;
+    const int coarse[] = {0, 0, 64, 64, 32, 24, 12};
+    double errors[2] = {};
+    for (int i = 0; i < 2; ++i) {
+        const SolvedScenario s =
+            solved(pendulum("end = " + std::to_string(end) + "\nelements = " + std::to_string(coarse[p] << i),
+                            "\n[method]\nfamily = \"lobatto\"\ndegree = " + std::to_string(p) + "\n"));
+        const std::vector<SolvedEvent> hits = hits_of(s);
+        ASSERT_EQ(hits.size(), 4u) << s.solution.report.message;
+        errors[i] = std::abs(hits[3].t - truth[3]);
+        EXPECT_GT(hits[3].error + 1e-14, 0.5 * errors[i]) << p << " " << i;
+        EXPECT_LT(hits[3].error, 2 * errors[i] + 2e-14) << p << " " << i;
+    }
+    const double order = std::log2(errors[0] / errors[1]);
+    // beyond degree 4 the finer one is at what is rounded
+    EXPECT_GT(order, p < 5 ? 2 * p - 0.3 : 9.5) << errors[0] << " " << errors[1];
+    EXPECT_LT(order, 2 * p + 0.5);
+}
+
+/// Leaves a sphere of 1 m, on which it slides, and is not caught again.
+TEST(Stops, OpenWhereTheyWouldPull)
+{
+    const double v = 1, cosine = 2.0 / 3 + v * v / (3 * 9.81);
+    const SolvedScenario s = solved(R"(format = 1
+gravity = [0, 0, -9.81]
+body = [{ name = "ball", shape = { point = true }, mass = 3, position = [0, 0, 1], velocity = [1, 0, 0] }]
+
+[[stop]]
+name = "sphere"
+between = ["world", "ball"]
+limits = [1, inf]
+
+[[sensor]]
+name = "place"
+type = "point"
+body = "ball"
+
+[[event]]
+name = "left"
+when = "place.z < 0"
+action = "stop"
+
+[time]
+end = 2
+accuracy = 1e-11
+)");
+    const Solution& solution = s.solution;
+    ASSERT_TRUE(solution.report.converged()) << solution.report.message;
+    ASSERT_EQ(solution.events.size(), 3u);   // closed from the start, opens, below
+    const State there = solution.motion.at(solution.events[1].t);
+    EXPECT_NEAR(there.X[0](2, 0), cosine, 1e-12);
+    EXPECT_EQ(solution.motion.end(), solution.events[2].t);
+}
+
+/// A rope of 1 m that is slack, comes taut with a jerk that takes what is along it, and holds.
+TEST(Stops, RopesOnlyPull)
+{
+    const SolvedScenario s = solved(R"(format = 1
+gravity = [0, 0, -9.81]
+body = [{ name = "ball", shape = { point = true }, mass = 3, position = [0.6, 0, 0] }]
+
+[[stop]]
+name = "rope"
+between = ["world", "ball"]
+limits = [0, 1]
+
+[time]
+end = 0.8
+accuracy = 1e-10
+)");
+    const Solution& solution = s.solution;
+    ASSERT_TRUE(solution.report.converged()) << solution.report.message;
+    const std::vector<SolvedEvent> hits = hits_of(s);
+    ASSERT_EQ(hits.size(), 1u);
+    EXPECT_NEAR(hits[0].t, std::sqrt(2 * 0.8 / 9.81), 1e-11);   // 0.6, 0.8, 1
+    const double v = std::sqrt(2 * 9.81 * 0.8);
+    EXPECT_NEAR(hits[0].speed, 0.8 * v, 1e-10);
+    EXPECT_NEAR(hits[0].impulse, 3 * 0.8 * v, 1e-9);
+    const State end = solution.motion.at_end(solution.motion.n_elements());
+    EXPECT_NEAR(norm(end.X[0].column(0)), 1, 1e-13);
+    // energy behind the jerk: what is across the rope, 0.6 v
+    const double energy = 0.5 * dot(end.V[0].column(0), end.V[0].column(0)) + 9.81 * end.X[0](2, 0);
+    EXPECT_NEAR(energy, 0.5 * 0.36 * v * v - 9.81 * 0.8, 1e-8);
+}
+
+/// A chain of two rods with a stop at the elbow, all joints once and twice: against minimal coordinates.
+TEST(Stops, ImpulsesDoNotDependOnDoubledJoints)
+{
+    const auto chain = [](bool is_doubled) {
+        std::string text = R"(format = 1
+body = [
+    { name = "upper", shape = { box = [1, 0.04, 0.04] }, mass = 2, position = [0.5, 0, 0] },
+    { name = "lower", shape = { box = [0.8, 0.04, 0.04] }, mass = 1, position = [1.4, 0, 0] }
+]
+)";
+        for (const char* name : {"shoulder", "elbow", "shoulder again", "elbow again"}) {
+            const bool is_elbow = name[0] == 'e',
+                       is_second = std::string(name).find("again") != std::string::npos;
+            if (is_second && !is_doubled) continue;
+            text += std::string("[[joint]]\nname = \"") + name + "\"\ntype = \"revolute\"\nbetween = [" +
+                    (is_elbow ? "\"upper\", \"lower\"" : "\"world\", \"upper\"") + "]\nat = [" +
+                    (is_elbow ? "1" : "0") + ", 0, 0]\naxis = [0, 0, 1]\n";
+            if (!is_second) text += std::string("rate = ") + (is_elbow ? "3" : "-1") + "\n";
+        }
+        return text + R"([start]
+initial = "project"
+
+[[stop]]
+name = "stop"
+joint = "elbow"
+limits = ["-inf", "30 deg"]
+restitution = 0.6
+
+[time]
+end = 0.5
+accuracy = 1e-11
+)";
+    };
+    std::vector<double> impulses;
+    for (const bool is_doubled : {false, true}) {
+        const SolvedScenario s = solved(chain(is_doubled));
+        ASSERT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+        const std::vector<SolvedEvent> hits = hits_of(s);
+        ASSERT_EQ(hits.size(), 1u);
+        const Motion& motion = s.solution.motion;
+        const int end = motion.impacts.ends[0];
+        const State before = motion.at_end(end, Side::left), behind = motion.at_end(end);
+        const auto rate = [](const State& state, int b) {
+            return angular_velocity(state.X[b], state.V[b])[2];
+        };
+        // rates of both rods in the plane: M of the angles of the rods, elbow bent by 30 degrees
+        const double c = std::cos(std::numbers::pi / 6), m11 = 2 * ((1 + 0.0016) / 12 + 0.25) + 1,
+                     m12 = 0.4 * c, m22 = (0.64 + 0.0016) / 12 + 0.16, det = m11 * m22 - m12 * m12;
+        const double u = rate(before, 1) - rate(before, 0);
+        const double mobility = (m11 + m22 + 2 * m12) / det;   // (-1, 1) M^-1 (-1, 1)^T
+        const double impulse = 1.6 * u / mobility;
+        EXPECT_NEAR(hits[0].impulse, impulse, 1e-13 * 10);
+        EXPECT_NEAR(rate(behind, 1) - rate(behind, 0), -0.6 * u, 1e-13 * 10);
+        const auto energy = [&](const State& s_) {
+            const double a = rate(s_, 0), b = rate(s_, 1);
+            return 0.5 * (m11 * a * a + 2 * m12 * a * b + m22 * b * b);
+        };
+        EXPECT_NEAR(energy(before) - energy(behind), 0.5 * (1 - 0.36) * u * u / mobility, 1e-13 * 10);
+        impulses.push_back(hits[0].impulse);
+    }
+    EXPECT_NEAR(impulses[0], impulses[1], 1e-13 * 10);
+}
+
+/// A joint that holds both ways begins at an event and catches: what it forbids is taken off, and no more.
+TEST(Stops, JointsWithARestitutionCatch)
+{
+    const SolvedScenario s = solved(R"(format = 1
+body = [
+    { name = "cart", shape = { point = true }, mass = 1, position = [0, 0, 0], velocity = [2, 0, 0] },
+    { name = "wagon", shape = { point = true }, mass = 3, position = [1, 0, 0] }
+]
+
+[[joint]]
+name = "coupling"
+type = "rod"
+between = ["cart", "wagon"]
+points = [[0, 0, 0], [0, 0, 0]]
+length = 0.5
+from = "ahead.x - behind.x < 0.5"
+restitution = 0
+
+[[sensor]]
+name = "behind"
+type = "point"
+body = "cart"
+
+[[sensor]]
+name = "ahead"
+type = "point"
+body = "wagon"
+
+[time]
+end = 1
+accuracy = 1e-11
+)");
+    ASSERT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+    ASSERT_EQ(s.solution.events.size(), 1u);
+    EXPECT_NEAR(s.solution.events[0].t, 0.25, 1e-13);
+    const State end = s.solution.motion.at_end(s.solution.motion.n_elements());
+    for (const Matrix34& V : end.V) EXPECT_NEAR(V(0, 0), 0.5, 1e-13);
+}
+
+TEST(Stops, AreRefusedByName)
+{
+    const auto refused = [](const std::string& text, const char* code) {
+        const ScenarioResult result = read(text);
+        EXPECT_NE(find(result, code), nullptr) << code << text << shown(result);
+    };
+    const std::string time = "end = 1\nelements = 10";
+    refused(ball("restitution = 1.5", time), "out-of-range");
+    std::string text = ball("", time);
+    text.replace(text.find("[0, inf]"), 8, "[1, 0.5]");
+    refused(text, "stop-limits");
+    text = ball("", time);
+    text.replace(text.find("[0, inf]"), 8, "[2, inf]");
+    refused(text, "stop-violated");
+    text = ball("", time);
+    text.replace(text.find("joint = \"guide\""), 15, "joint = \"guild\"");
+    refused(text, "joint-unknown");
+    refused(ball("", time) + "\n[method]\nwindow = 2\n", "event-method");
+}
+
+}   // namespace
+
+}   // namespace livens
