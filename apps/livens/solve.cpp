@@ -29,7 +29,6 @@
 namespace livens::program {
 
 namespace {
-
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 

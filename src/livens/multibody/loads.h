@@ -172,8 +172,7 @@ struct Load;
 
 /// When it acts: instants that are stated stand among its breaks.
 struct LoadTimes : ActingTimes {
-    /// Of what for_its_time() has made: the load that acts always.
-    std::shared_ptr<const Load> whenever{};
+    std::shared_ptr<const Load> whenever{};   ///< of what for_its_time() has made: the load that acts always
 };
 
 /// A load is data and functions; a new one is a new maker.

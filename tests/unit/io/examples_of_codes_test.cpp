@@ -105,6 +105,7 @@ const std::set<std::string_view> without{
     "guess-bodies",
     "guess-time",
     "guess-unused",
+    "impact-simultaneous",
     "internal",
     "io-directory",
     "io-damaged",

@@ -274,6 +274,7 @@ void measure_error(const Model& model, const Problem& problem, const Method& met
     }
     solution.estimate = second.take(n);
     solution.events = second.events();
+    add_rests(model, solution.events, solution.motion, options.lowest_hop, solution.estimate);
     second.tell_numbers(solution.numbers);
     name_law(solution, solution.estimate);
     add_lost_vibrations(model, solution.motion, solution.estimate);

@@ -2,6 +2,7 @@
 // Events of the second solution, at instants of its own: docs/theory.md, "Events", Errors.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "livens/spacetime/accuracy/reference_solution.h"
 #include "livens/spacetime/phases/events.h"
@@ -76,6 +77,25 @@ void ReferenceSolution::compare_events(Solution& second, double start, double en
         for (std::size_t b = 0; b < static_cast<std::size_t>(motion.n_bodies); ++b)
             for (std::size_t c = 0; c < 12; ++c) X[12 * b + c] += later * on_this_side.V[b].a[c];
     }
+}
+
+void spacetime_internal::add_rests(const Model& model, const std::vector<SolvedEvent>& events,
+                                   const Motion& motion, double lowest_hop, ErrorEstimate& found)
+{
+    const auto n = static_cast<std::size_t>(found.n_bodies);
+    double left_out = 0;
+    std::size_t end = 0;
+    for (std::size_t k = 0; k <= events.size() && !found.empty(); ++k) {
+        const double until = k < events.size() ? events[k].t : std::numeric_limits<double>::infinity();
+        for (; end < motion.mesh.ends.size() && motion.mesh.ends[end] < until; ++end)
+            for (std::size_t b = 0; b < n && left_out > 0; ++b) {
+                found.position[end * n + b] += left_out;
+                if (!model.bodies()[b].is_point) found.orientation[end * n + b] += left_out;
+            }
+        // one that was hit and did not stay where it was at once
+        if (k < events.size() && events[k].rests_at > events[k].t) left_out += lowest_hop;
+    }
+    if (left_out > 0) found.find_largest(motion.mesh);
 }
 
 }   // namespace livens

@@ -55,6 +55,10 @@ private:
     double differs_from_ = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// Bounces that were left out where stops close (SolveOptions::lowest_hop): both solutions leave them out.
+void add_rests(const Model& model, const std::vector<SolvedEvent>& events, const Motion& motion,
+               double lowest_hop, ErrorEstimate& found);
+
 /// Of what rounding may move a motion between both ends by, if all of it went the worst way: what it does
 /// move it by.
 inline constexpr double rounding_share = 0.5;

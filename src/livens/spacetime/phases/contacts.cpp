@@ -64,6 +64,118 @@ double fastest(const State& before, const Joint& stop)
     return size;
 }
 
+/// Of the joints that begin at a state: stops behind those that hold both ways.
+class Meeting {
+public:
+    Meeting(const Model& model, const Decisions& decisions, const State& reached,
+            const std::vector<int>& begins)
+        : model_(model), held_(model, decisions, reached.t), before_(reached), begins_(begins)
+    {
+        outcome_.V = reached.V;
+        for (const int j : begins) (is_stop(model.joints()[j]) ? stops_ : both_ways_).push_back(j);
+        n_new_ = stops_.size();
+        for (int j = 0; j < static_cast<int>(model.joints().size()); ++j)
+            if (is_stop(model.joints()[j]) && decisions.acts({EventAction::Does::end, j}, reached.t))
+                stops_.push_back(j);
+        for (std::size_t k = 0; k < n_new_; ++k)
+            if (speed_apart(stop(k), reached) < -no_speed * fastest(reached, stop(k)))
+                hit_.push_back(stops_[k]);
+    }
+
+    ContactOutcome outcome(double lowest_hop)
+    {
+        if (strike()) {
+            close(lowest_hop);
+            settle();
+        }
+        return std::move(outcome_);
+    }
+
+private:
+    const Joint& stop(std::size_t k) const { return model_.joints()[stops_[k]]; }
+    bool is_hit(int joint) const { return std::ranges::find(hit_, joint) != hit_.end(); }
+    bool refuse(const std::string& why)
+    {
+        outcome_.refused = names_of(model_, begins_) + " at " + to_text(before_.t, 6) + " s: " + why;
+        return false;
+    }
+
+    /// Velocities behind the impact, and what it was for each. False: there are none.
+    bool strike()
+    {
+        if (stops_.size() > most_stops_at_once)
+            return refuse("more than " + std::to_string(most_stops_at_once) + " stops touch at once");
+        const bool is_named =
+            std::ranges::all_of(hit_, [&](int j) { return model_.joints()[j].impact->goes_together; });
+        if (hit_.size() > 1 && !is_named)
+            return refuse(names_of(model_, hit_) +
+                          " are hit at the same instant, where what happens is a law of "
+                          "its own; state that they go together, by Moreau's law");
+        ImpactOutcome found;
+        if (!hit_.empty() || !both_ways_.empty()) {
+            std::vector<Joint> all;
+            for (const int j : stops_) all.push_back(model_.joints()[j]);
+            found = impact(held_.with(both_ways_, {}), before_, all);
+            if (!found.is_found)
+                return refuse("no velocities behind the impact fulfil the joints, which lose rank there");
+            outcome_.V = found.V;
+            outcome_.jumps = true;
+        } else {
+            found.stops.resize(stops_.size());
+        }
+        for (const int j : both_ways_) outcome_.begun.push_back({j, 0, 0, true, true, before_.t});
+        for (std::size_t k = 0; k < stops_.size(); ++k) {
+            const StopImpact& one = found.stops[k];
+            const bool leaves = one.impulse == 0 && one.apart > no_speed * fastest(before_, stop(k));
+            if (k < n_new_)
+                outcome_.begun.push_back({stops_[k], one.impulse, std::max(-one.approach, 0.0),
+                                          is_hit(stops_[k]), false, before_.t});
+            else
+                (leaves ? outcome_.opens : resting_).push_back(stops_[k]);
+        }
+        return true;
+    }
+
+    /// Those of the new stops at which bodies stay.
+    void close(double lowest_hop)
+    {
+        State behind = before_;
+        behind.V = outcome_.V;
+        const std::vector<int> closed = resting_;
+        for (Contact& one : outcome_.begun) {
+            const Joint& stop = model_.joints()[one.joint];
+            if (!is_stop(stop)) continue;
+            const double e = stop.impact->restitution, slow = no_speed * fastest(before_, stop),
+                         apart = one.is_hit ? e * one.approach : speed_apart(stop, behind),
+                         together = -acceleration_apart(stop, held_.with(both_ways_, closed), behind);
+            if (!(together > 0) || apart < -slow) continue;   // nothing presses
+            const double rebound = std::max(apart, 0.0), hop = rebound * rebound / (2 * together);
+            one.closes = hop < lowest_hop * stop.rows[0].scale || rebound <= slow;
+            if (!one.closes) continue;
+            if (one.is_hit && e < 1) one.rests_at = before_.t + 2 * rebound / (together * (1 - e));
+            resting_.push_back(one.joint);
+        }
+    }
+
+    /// What rests moves no more: velocities that closed stops leave.
+    void settle()
+    {
+        if (resting_.empty() || !outcome_.jumps) return;
+        State behind = before_;
+        behind.V = outcome_.V;
+        const ImpactOutcome still = impact(held_.with(both_ways_, resting_), behind, {});
+        if (still.is_found) outcome_.V = still.V;
+    }
+
+    const Model& model_;
+    HeldModels held_;
+    const State& before_;
+    const std::vector<int>& begins_;
+    std::vector<int> both_ways_, stops_, hit_, resting_;   // stops: the new ones first
+    std::size_t n_new_ = 0;
+    ContactOutcome outcome_;
+};
+
 }   // namespace
 
 void check_stops(const Model& model, const State& start)
@@ -83,83 +195,7 @@ void check_stops(const Model& model, const State& start)
 ContactOutcome meet_joints(const Model& model, const Decisions& decisions, const State& reached,
                            const std::vector<int>& begins, double lowest_hop)
 {
-    const double t = reached.t;
-    const HeldModels held_models(model, decisions, t);
-    ContactOutcome outcome;
-    outcome.V = reached.V;
-    std::vector<int> both_ways, stops, closed;
-    for (const int j : begins) (is_stop(model.joints()[j]) ? stops : both_ways).push_back(j);
-    const std::size_t n_new = stops.size();
-    for (int j = 0; j < static_cast<int>(model.joints().size()); ++j)
-        if (is_stop(model.joints()[j]) && decisions.acts({EventAction::Does::end, j}, t)) stops.push_back(j);
-    const auto joints_of = [&](const std::vector<int>& all) {
-        std::vector<Joint> some;
-        for (const int j : all) some.push_back(model.joints()[j]);
-        return some;
-    };
-    const auto no_velocities = [&](const std::string& why) {
-        outcome.refused = names_of(model, begins) + " at " + to_text(t, 6) + " s: " + why;
-        return outcome;
-    };
-    if (stops.size() > most_stops_at_once)
-        return no_velocities("more than " + std::to_string(most_stops_at_once) + " stops touch at once");
-    const std::vector<Joint> all_stops = joints_of(stops);
-    std::vector<int> hit;
-    for (std::size_t k = 0; k < n_new; ++k) {
-        const double speed = speed_apart(all_stops[k], reached);
-        if (speed < -no_speed * fastest(reached, all_stops[k])) hit.push_back(stops[k]);
-    }
-    const bool is_named =
-        std::ranges::all_of(hit, [&](int j) { return model.joints()[j].impact->goes_together; });
-    if (hit.size() > 1 && !is_named)
-        return no_velocities(names_of(model, hit) +
-                             " are hit at the same instant, where what happens is a law of its own "
-                             "(impact-simultaneous); state that they go together, by Moreau's law");
-    const Model held = held_models.with(both_ways, {});
-    if (!hit.empty() || !both_ways.empty()) {
-        const ImpactOutcome found = impact(held, reached, all_stops);
-        if (!found.is_found)
-            return no_velocities("no velocities behind the impact fulfil the joints: they lose rank there");
-        outcome.V = found.V;
-        outcome.jumps = true;
-        for (const int j : both_ways) outcome.begun.push_back({j, 0, 0, true, true, t});
-        for (std::size_t k = 0; k < stops.size(); ++k) {
-            const StopImpact& one = found.stops[k];
-            if (k < n_new)
-                outcome.begun.push_back({stops[k], one.impulse, std::max(-one.approach, 0.0),
-                                         std::ranges::find(hit, stops[k]) != hit.end(), false, t});
-            else if (one.impulse == 0 && one.apart > no_speed * fastest(reached, all_stops[k]))
-                outcome.opens.push_back(stops[k]);
-            else
-                closed.push_back(stops[k]);
-        }
-    } else {
-        for (std::size_t k = 0; k < n_new; ++k) outcome.begun.push_back({stops[k], 0, 0, false, false, t});
-        closed.assign(stops.begin() + static_cast<std::ptrdiff_t>(n_new), stops.end());
-    }
-    State behind = reached;
-    behind.V = outcome.V;
-    for (Contact& one : outcome.begun) {
-        const Joint& stop = model.joints()[one.joint];
-        if (!is_stop(stop)) continue;
-        const double apart = one.is_hit ? stop.impact->restitution * one.approach : speed_apart(stop, behind),
-                     together = -acceleration_apart(stop, held_models.with(both_ways, closed), behind);
-        if (!(together > 0) || apart < -no_speed * fastest(behind, stop)) continue;   // nothing presses
-        const double rebound = std::max(apart, 0.0), e = stop.impact->restitution;
-        one.closes = rebound * rebound < 2 * together * lowest_hop * stop.rows[0].scale ||
-                     rebound <= no_speed * fastest(reached, stop);
-        if (!one.closes) continue;
-        if (one.is_hit && e < 1) one.rests_at = t + 2 * rebound / (together * (1 - e));
-    }
-    // What rests moves no more: velocities that closed stops leave.
-    std::vector<int> resting = closed;
-    for (const Contact& one : outcome.begun)
-        if (one.closes && is_stop(model.joints()[one.joint])) resting.push_back(one.joint);
-    if (!resting.empty() && outcome.jumps) {
-        const ImpactOutcome still = impact(held_models.with(both_ways, resting), behind, {});
-        if (still.is_found) outcome.V = still.V;
-    }
-    return outcome;
+    return Meeting(model, decisions, reached, begins).outcome(lowest_hop);
 }
 
 }   // namespace livens::inline spacetime_internal

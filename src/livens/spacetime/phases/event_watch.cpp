@@ -20,7 +20,7 @@ namespace {
 /// Of an element: so far behind an instant a condition has changed that changes there.
 constexpr double behind = 1e-6;
 /// Of the scale of its row: what leaves a stop, or slides along it, is beyond it by rounding.
-constexpr double slack = 1e-14;
+constexpr double beyond_stop = 1e-14;
 /// Of an element: so far ahead the state has what the polynomial has at its end.
 constexpr double at_once = 0.05;
 /// Of an element: between which rates are differences; and of these what rounding may be.
@@ -88,7 +88,8 @@ EventWatch::EventWatch(const Model& model, ActingModel acting, std::vector<bool>
             std::ranges::any_of(acting_.model.loads(), [&](const Load& l) { return l.name == watch.name; }))
             watch.name += "'";
         const int e = static_cast<int>(acting_.model.loads().size()) - first_watch_;
-        slack_.push_back(is_open_stop(e) ? slack * whole_.joints()[event.action.joint].rows[0].scale : 0);
+        slack_.push_back(is_open_stop(e) ? beyond_stop * whole_.joints()[event.action.joint].rows[0].scale
+                                         : 0);
         if (slack_[e] > 0)
             watch.guarded = [exact = watch.guarded, by = slack_[e]](const LoadArguments& at,
                                                                     std::span<double> out) {

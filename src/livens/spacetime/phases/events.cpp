@@ -243,7 +243,8 @@ void tell_releases(const Model& model, const Motion& motion, const std::vector<d
         const std::vector<JointSample> at = sample_joints(model, motion, ends[k]);
         for (std::size_t j = 0; j < at.size(); ++j) {
             const Joint& joint = model.joints()[j];
-            if (!joint.ends_near(ends[k], gap)) continue;
+            const bool is_stop = joint.impact && joint.impact->open_side != 0;   // told as an event
+            if (is_stop || !joint.ends_near(ends[k], gap)) continue;
             report.notes.push_back("'" + joint.name + "' is released at " + to_text(ends[k], 6) +
                                    " s, with a reaction of " + to_text(norm(at[j].left.force), 3) +
                                    " N and " + to_text(norm(at[j].left.torque), 3) +

@@ -16,7 +16,7 @@ namespace livens::inline spacetime_internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double telling = 3;   // times the difference of two motions
+constexpr double sure = 3;   // times the difference of two motions
 constexpr int most_shrinks = 24;
 
 /// Events of a phase along a motion, angles counted on the way.
@@ -118,7 +118,7 @@ double undecided_place(const Model& model, const Motion& motion, const Motion& o
                 if (t > other.end()) continue;
                 const double lacking = -f(s),
                              apart = std::abs(looks->watch().margin(event, looks->at(e, s, other)) + lacking);
-                if (!(lacking > telling * apart)) return t;
+                if (!(lacking > sure * apart)) return t;
             }
         }
         looks->pass(e, n_looks);

@@ -348,7 +348,9 @@ private:
             const double gap = gap_of(*stop, start) / stop->rows[0].scale;
             if (gap <= touching_start) touched.push_back(static_cast<int>(e));
         }
-        if (!touched.empty()) meet(at, touched, start, whole);
+        if (touched.empty() || meet(at, touched, start, whole)) return;
+        throw InputError({"impact-simultaneous", "start", "stops that are hit where the motion begins", "",
+                          "", whole.report.message, "begin apart from them"});
     }
 
     bool is_storm(Solution& whole) const

@@ -180,7 +180,8 @@ void read_events(Builder& builder, bool is_run)
     if (builder.findings().n_errors() > 0) return;
     for (const StatedConditions& one : builder.conditions()) {
         const auto index = [&](const auto& all) {
-            const auto at = std::ranges::find_if(all, [&](const auto& part) { return part.name == one.name; });
+            const auto at =
+                std::ranges::find_if(all, [&](const auto& part) { return part.name == one.name; });
             return static_cast<int>(at - all.begin());
         };
         EventAction action;

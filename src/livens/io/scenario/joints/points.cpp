@@ -41,7 +41,7 @@ void warn_of_world_points(Builder& builder, const Section& section, const std::a
         const Matrix4& mass = builder.model().bodies()[body].mass;
         const Vector3 stated = section.row("points", i), p = builder.in_axes(body, stated),
                       // The centre of mass from the mass matrix: its first row is (M, S), see (P7).
-                      center = (1 / mass(0, 0)) * Vector3{mass(0, 1), mass(0, 2), mass(0, 3)},
+            center = (1 / mass(0, 0)) * Vector3{mass(0, 1), mass(0, 2), mass(0, 3)},
                       as_place = transpose(directors(X)) * (p - X.column(0));
         const bool is_reference = stated == Vector3{};   // is meant
         if (is_reference || norm(p - center) <= reach || !(norm(as_place - center) <= reach)) continue;
