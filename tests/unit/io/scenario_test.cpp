@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 
+#include "unit/io/codes_of_tests.h"
 #include "unit/io/scenario_text.h"
 
 namespace livens {
@@ -474,68 +475,6 @@ TEST(ScenarioCodes, WarningsLeaveTheScenarioAlone)
     }
 }
 
-/// Of mesh_scenario_test.cpp and parameters_test.cpp, but for the last lines.
-const std::set<std::string_view> codes_of_others{
-    "parameter-name",     "parameter-ring",    "parameter-set",     "parameter-unit", "parameter-unused",
-    "repeat-braces",      "repeat-index",      "density-field",     "mesh-file",      "mesh-format",
-    "mesh-inverted",      "mesh-open",         "mesh-path",         "mesh-region",    "mesh-unit",
-    "surface-unknown",    "mesh-non-manifold", "mesh-self-contact",   // soundness_test.cpp of geometry
-    "not-in-this-version"};                                           // see schema_test.cpp
-
-/// The reader refuses these before the core sees them, or only calls of the library lead to them; a missing
-/// backend depends on the build, and files of results have tests of their own.
-const std::set<std::string_view> codes_of_the_core{"accuracy-out-of-range",
-                                                   "backend-missing",
-                                                   "basis-nodes",
-                                                   "browser",
-                                                   "browser-missing",
-                                                   "picture",
-                                                   "degree",
-                                                   "drives-method",
-                                                   "degree-out-of-range",
-                                                   "gauss-points-out-of-range",
-                                                   "gear-ratio",
-                                                   "internal",
-                                                   "io-damaged",
-                                                   "io-foreign",
-                                                   "io-not-a-file",
-                                                   "io-truncated",
-                                                   "io-version",
-                                                   "joint-empty",
-                                                   "joint-method",
-                                                   "joint-row",
-                                                   "joint-scale",
-                                                   "joint-second",
-                                                   "knots-not-finite",
-                                                   "load-empty",
-                                                   "load-negative",
-                                                   "load-without-tangent",
-                                                   "mass-not-positive",
-                                                   "max-iterations-out-of-range",
-                                                   "no-elements",
-                                                   "no-such-port",
-                                                   "not-at-rest",
-                                                   "quantity-unbounded",
-                                                   "quantity-unknown",
-                                                   "not-in-equilibrium",
-                                                   "point-with-directors",
-                                                   "python-function",
-                                                   "quadrature-points",
-                                                   "quaternion-zero",
-                                                   "sample-exact-method",
-                                                   "samples",
-                                                   "size-not-positive",
-                                                   "sensor-empty",
-                                                   "attraction-mu",
-                                                   "start-size",
-                                                   "time-elements",
-                                                   "time-out-of-range",
-                                                   "time-outside",
-                                                   "time-start",
-                                                   "tolerance-out-of-range",
-                                                   "window",
-                                                   "window-out-of-range"};
-
 /// Whoever adds a code says here how a scenario leads to it, or that none does.
 TEST(ScenarioCodes, AllAreProvokedByTheseTests)
 {
@@ -557,6 +496,9 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
     others.insert({"conditions-value", "periodic-free", "periodic-turn", "roots-unused", "guess-bodies",
                    "guess-time", "guess-unused", "unknown-bounds", "unknown-guess", "unknown-march",
                    "unknown-order", "unknown-place", "unknown-unseen"});   // their own tests
+    others.insert({"event-action", "event-condition", "event-method", "event-reaction", "impact-simultaneous",
+                   "stop-limits", "stop-of", "stop-restitution", "stop-self",
+                   "stop-violated"});   // decided_events_test.cpp, stops_test.cpp
     others.insert(codes_of_others.begin(), codes_of_others.end());
     for (const Case& c : cases()) {
         EXPECT_NE(explain(c.code), "") << c.code;

@@ -5,6 +5,7 @@
 
 #include "livens/io/solve_scenario.h"
 #include "livens/spacetime/solve.h"
+#include "livens/statics/equilibrium.h"
 #include "unit/io/scenario_text.h"
 
 namespace livens {
@@ -357,6 +358,22 @@ accuracy = 1e-11
     EXPECT_NEAR(s.solution.events[0].t, 0.25, 1e-13);
     const State end = s.solution.motion.at_end(s.solution.motion.n_elements());
     for (const Matrix34& V : end.V) EXPECT_NEAR(V(0, 0), 0.5, 1e-13);
+}
+
+/// A search that does not know them would come to rest beyond one.
+TEST(Stops, AreNoPlaceBehindWhichThingsRest)
+{
+    std::string text = pendulum("end = 1\nelements = 10");
+    text.replace(text.find("\"0 deg\""), 7, "-0.2");
+    const ScenarioResult result = read(text);
+    ASSERT_TRUE(result.scenario) << shown(result);
+    try {
+        find_equilibrium(result.scenario->model, result.scenario->conditions.start);
+        FAIL() << "it rests beyond its stop";
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.complaint().code, "event-method");
+        EXPECT_EQ(error.complaint().path, "joint[buffer]");
+    }
 }
 
 TEST(Stops, AreRefusedByName)

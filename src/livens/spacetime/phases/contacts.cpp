@@ -7,6 +7,7 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/dynamics/instant/impact.h"
+#include "livens/spacetime/phases/event_watch.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -178,17 +179,36 @@ private:
 
 }   // namespace
 
+std::vector<StopDepth> depths_of_stops(const Model& model, const State& start)
+{
+    std::vector<StopDepth> all;
+    const auto closes = [&](const Event& event) {
+        const Joint* joint = begun_by_impact(model, event.action);
+        return joint != nullptr && is_stop(*joint);
+    };
+    if (std::ranges::none_of(model.events(), closes)) return all;
+    // Conditions count turns; rows of angles are alike half a turn on.
+    const EventWatch watch(model, acting_at(model, start.t), std::vector<bool>(model.events().size(), false),
+                           start);
+    for (std::size_t e = 0; e < model.events().size(); ++e) {
+        const Event& event = model.events()[e];
+        if (!closes(event)) continue;
+        const double depth = watch.margin(static_cast<int>(e), watch.start());
+        all.push_back({static_cast<int>(e), depth / model.joints()[event.action.joint].rows[0].scale});
+    }
+    return all;
+}
+
 void check_stops(const Model& model, const State& start)
 {
-    constexpr double deepest = 1e-9;   // of the scale of its row
-    for (const Joint& joint : model.joints()) {
-        if (!is_stop(joint)) continue;
-        const double depth = -gap_of(joint, start);
-        if (depth > deepest * joint.rows[0].scale)
-            throw InputError({"stop-violated", "joint[" + joint.name + "]",
-                              "'" + joint.name + "' is passed where the motion begins", to_text(depth, 6), "",
-                              "a stop lets nothing beyond it",
-                              "begin on its open side, or change its limits"});
+    constexpr double deepest = 1e-9;
+    for (const StopDepth& one : depths_of_stops(model, start)) {
+        if (one.depth <= deepest) continue;
+        const Joint& joint = model.joints()[model.events()[static_cast<std::size_t>(one.event)].action.joint];
+        throw InputError({"stop-violated", "joint[" + joint.name + "]",
+                          "'" + joint.name + "' is passed where the motion begins",
+                          to_text(one.depth * joint.rows[0].scale, 6), "", "a stop lets nothing beyond it",
+                          "begin on its open side, or change its limits"});
     }
 }
 

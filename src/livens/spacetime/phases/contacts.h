@@ -26,6 +26,12 @@ struct ContactOutcome {
     std::string refused;      ///< why there is none, for people
 };
 
+/// How far a state is beyond the stop that an event closes, by the scale of its row.
+struct StopDepth {
+    int event = 0;
+    double depth = 0;
+};
+std::vector<StopDepth> depths_of_stops(const Model& model, const State& start);
 /// Throws InputError `stop-violated` where a state is beyond a stop.
 void check_stops(const Model& model, const State& start);
 

@@ -50,13 +50,13 @@ void refuse_shared(const Model& model, const ActingModel& acting, const ModelTab
         const auto at = std::ranges::find(acting.joints, input.joint);
         const auto j = static_cast<std::size_t>(at - acting.joints.begin());
         if (at == acting.joints.end() || found.joint_is_unique[j]) continue;
-        throw InputError({"event-reaction", "event[" + event.name + "]",
-                          "'" + event.name + "' asks for a reaction of joint '" +
-                              model.joints()[input.joint].name +
-                              "' that is not unique: other joints could carry " + in_words(found.shared[j]),
-                          "", "", "bodies are held more often than they need to be",
-                          "let joints hold what they must and no more, as a spherical joint in place of a "
-                          "revolute one"});
+        throw InputError(
+            {"event-reaction", "event[" + event.name + "]",
+             "'" + event.name + "' asks for a reaction of joint '" + model.joints()[input.joint].name +
+                 "' that is not unique: other joints could carry " + livens::in_words(found.shared[j]),
+             "", "", "bodies are held more often than they need to be",
+             "let joints hold what they must and no more, as a spherical joint in place of a "
+             "revolute one"});
     }
 }
 

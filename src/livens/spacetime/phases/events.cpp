@@ -147,7 +147,7 @@ void join(Motion& whole, Motion&& next, bool jumps)
 void drop_last(Motion& motion)
 {
     const auto n = static_cast<std::size_t>(motion.n_elements());
-    const auto keep = [n](auto& values, std::size_t a_part, std::size_t parts) {
+    const auto keep = [](auto& values, std::size_t a_part, std::size_t parts) {
         if (!values.empty()) values.resize(values.size() / parts * (parts - a_part));
     };
     motion.mesh.ends.pop_back();

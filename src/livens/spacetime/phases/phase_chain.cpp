@@ -11,7 +11,6 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
-#include "livens/dynamics/instant/impact.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/phases/contacts.h"
@@ -342,12 +341,8 @@ private:
     {
         State& start = at.problem.conditions.start;
         std::vector<int> touched;
-        for (std::size_t e = 0; e < stated_.events().size(); ++e) {
-            const Joint* stop = begun_by_impact(stated_, stated_.events()[e].action);
-            if (stop == nullptr || stop->impact->open_side == 0) continue;
-            const double gap = gap_of(*stop, start) / stop->rows[0].scale;
-            if (gap <= touching_start) touched.push_back(static_cast<int>(e));
-        }
+        for (const StopDepth& one : depths_of_stops(stated_, start))
+            if (one.depth >= -touching_start) touched.push_back(one.event);
         if (touched.empty() || meet(at, touched, start, whole)) return;
         throw InputError({"impact-simultaneous", "start", "stops that are hit where the motion begins", "",
                           "", whole.report.message, "begin apart from them"});
