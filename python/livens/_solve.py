@@ -106,7 +106,7 @@ def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, el
     return solution
 
 
-def solve_many(models: Model | Iterable[Model], time: Time = None, *,
+def solve_many(models: Model | Iterable[Model], time: Time = None, *,   # type: ignore[misc]   # threads of all, not of each
                variations: Iterable[Mapping[str, Any]] | None = None, threads: int = 0,
                accuracy: Number | None = None, elements: int | None = None, output: Number | Vector | None = None,
                breaks: Literal["from_loads", "ignore"] | None = None, method: Method | str | None = None,

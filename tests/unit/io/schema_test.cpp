@@ -41,6 +41,7 @@ const std::vector<std::string> documents{file_text("tests/fuzz/corpus/every_key_
                                          file_text("tests/fuzz/corpus/every_key_of_joints_and_loads.toml"),
                                          file_text("tests/fuzz/corpus/every_key_of_mechanisms.toml"),
                                          file_text("tests/fuzz/corpus/every_key_of_laws.toml"),
+                                         file_text("tests/fuzz/corpus/every_key_of_events.toml"),
                                          file_text("tests/fuzz/corpus/every_key_of_mixed_two_ends.toml"),
                                          file_text("tests/fuzz/corpus/known_at_both_ends.toml")};
 
@@ -225,7 +226,7 @@ TEST(Schema, LONG_EveryValueOfAnotherTypeIsAnErrorAtTheValue)
                     return d.line == static_cast<int>(o.line) + 1 && d.column >= o.value_column() &&
                            (d.code == "wrong-type" || d.code == "unit" || d.code == "unknown-key" ||
                             d.code == "point-unknown" || d.code == "joint-unknown" ||
-                            d.code == "conditions-unknown");
+                            d.code == "conditions-unknown" || d.code == "event-condition");
                 });
             EXPECT_TRUE(is_told) << o.with_value(wrong) << shown(result);
         }

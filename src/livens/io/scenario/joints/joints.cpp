@@ -337,10 +337,11 @@ Table joint_table()
              "reaction ends. Default: never. lobatto and radau only.",
              "s"},
          Key{"restitution", types::number,
-             "0: the joint may begin to act where bodies move otherwise than it lets them; velocities change "
+             "0, nothing else: the joint may begin to act where bodies move otherwise than it lets them; "
+             "velocities change "
              "at once, by an impact. Default: they have to meet.",
              ""}
-             .within({0, 0})}}
+             .within({0, 1})}}
         .with_kinds("type", std::move(all));
 }
 

@@ -13,7 +13,14 @@ void read_times(Builder& builder, const Section& section, Joint& joint)
     if (has_number(section, "from")) joint.from = section.number("from");
     if (has_number(section, "until")) joint.until = section.number("until");
     joint.is_begun_by_event = !condition_of(section, "from").empty();
-    if (section.takes("restitution") && section.has("restitution")) joint.impact = ImpactLaw{};
+    if (section.takes("restitution") && section.has("restitution")) {
+        joint.impact = ImpactLaw{};
+        if (section.number("restitution") != 0)
+            throw InputError({"stop-restitution", "joint[" + joint.name + "].restitution",
+                              "a joint that holds both ways catches", to_text(section.number("restitution")),
+                              "0", "what it forbids is zero behind the impact",
+                              "bodies that bounce do so at a [[stop]]"});
+    }
     joint.is_ended_by_event = !condition_of(section, "until").empty();
     if (joint.is_decided_by_events()) builder.conditions().push_back({false, joint.name, &section});
     if (time == nullptr) return;

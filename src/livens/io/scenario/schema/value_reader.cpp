@@ -71,8 +71,11 @@ private:
             return read_integer(node);
         case Form::number:
             return read_number(node);
-        case Form::text:
         case Form::condition:
+            if (node.kind == NodeKind::text && node.text().find_first_not_of(" \t") == std::string::npos)
+                return wrong_type(node);
+            [[fallthrough]];
+        case Form::text:
             return read_text(node, value_.text);
         case Form::choice:
             return read_choice(node);
