@@ -376,6 +376,42 @@ TEST(Stops, AreNoPlaceBehindWhichThingsRest)
     }
 }
 
+/// Two balls on guides of their own, and one with two floors.
+TEST(Stops, HitAtOnceNeedALawWhereTheyFeelEachOther)
+{
+    const auto falling = [](const std::string& lower, const std::string& upper) {
+        std::string text = "format = 1\ngravity = [0, 0, -9.81]\n";
+        for (const char* name : {"a", "b"}) {
+            const bool is_a = name[0] == 'a';
+            text += std::string("[[body]]\nname = \"") + name +
+                    "\"\nshape = { sphere = 0.1 }\nmass = " + (is_a ? "1" : "2") + "\nposition = [" +
+                    (is_a ? "0" : "1") + ", 0, 0.5]\n";
+            text += std::string("[[joint]]\nname = \"g") + name +
+                    "\"\ntype = \"prismatic\"\nbetween = [\"world\", \"" + name + "\"]\nat = [" +
+                    (is_a ? "0" : "1") + ", 0, 0]\naxis = [0, 0, 1]\ncoordinate = 0.5\n";
+        }
+        text += "[[stop]]\nname = \"one\"\n" + lower + "\n[[stop]]\nname = \"two\"\n" + upper +
+                "\n[time]\nend = 0.5\naccuracy = 1e-10\n";
+        return solved(text);
+    };
+    const std::string of_a = "joint = \"ga\"\nlimits = [0, inf]\nrestitution = 0.5";
+    // each on its own floor
+    const SolvedScenario apart = falling(of_a, "joint = \"gb\"\nlimits = [0, inf]");
+    EXPECT_TRUE(apart.solution.report.converged()) << apart.solution.report.message;
+    EXPECT_EQ(hits_of(apart).size(), 2u);
+    // one body, two floors
+    const SolvedScenario twice = falling(of_a, "joint = \"ga\"\nlimits = [0, inf]\nrestitution = 0.2");
+    EXPECT_FALSE(twice.solution.report.converged());
+    EXPECT_NE(twice.solution.report.message.find("same instant"), std::string::npos);
+    EXPECT_NEAR(twice.solution.motion.end(), std::sqrt(1 / 9.81), 1e-12);   // what was before is kept
+    const std::string together = "\nimpact = \"together\"";
+    const SolvedScenario named =
+        falling(of_a + together, "joint = \"ga\"\nlimits = [0, inf]\nrestitution = 0.2" + together);
+    ASSERT_TRUE(named.solution.report.converged()) << named.solution.report.message;
+    const Motion& motion = named.solution.motion;
+    EXPECT_NEAR(motion.at_end(motion.impacts.ends[0]).V[0](2, 0), 0.5 * std::sqrt(9.81), 1e-10);
+}
+
 TEST(Stops, AreRefusedByName)
 {
     const auto refused = [](const std::string& text, const char* code) {

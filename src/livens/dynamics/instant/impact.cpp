@@ -15,6 +15,9 @@ namespace livens::inline dynamics_internal {
 
 namespace {
 
+/// Of what a stop does to itself: less than that of it another does not feel.
+constexpr double felt = 1e-12;
+
 const ConstraintRow& row_of(const Joint& stop) { return stop.rows[0]; }
 
 /// Side times the gradient by each body, and the speed that does not depend on velocities.
@@ -149,6 +152,11 @@ ImpactOutcome impact(const Model& held, const State& before, std::span<const Joi
     std::vector<std::vector<double>> D(n, std::vector<double>(n));
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = 0; j < n; ++j) D[i][j] = directions[i].along(responses[j]);
+    const auto is_hit = [&](std::size_t i) { return outcome.stops[i].approach < 0; };
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (is_hit(i) && is_hit(j) && std::abs(D[i][j]) > felt * std::sqrt(D[i][i] * D[j][j]))
+                outcome.are_apart = false;
     const std::optional<std::vector<double>> impulses = complementary(D, speeds, least);
     if (!impulses) return outcome;
     for (std::size_t i = 0; i < n; ++i)

@@ -19,6 +19,7 @@ struct StopImpact {
 struct ImpactOutcome {
     std::vector<Matrix34> V;   ///< of all bodies behind it
     std::vector<StopImpact> stops;
+    bool are_apart = true;   ///< no two of those that are hit feel each other: each law says the same of them
     bool is_found = false;   ///< false: joints lose rank there, or no velocities fulfil the law
 };
 

@@ -106,12 +106,6 @@ private:
     {
         if (stops_.size() > most_stops_at_once)
             return refuse("more than " + std::to_string(most_stops_at_once) + " stops touch at once");
-        const bool is_named =
-            std::ranges::all_of(hit_, [&](int j) { return model_.joints()[j].impact->goes_together; });
-        if (hit_.size() > 1 && !is_named)
-            return refuse(names_of(model_, hit_) +
-                          " are hit at the same instant, where what happens is a law of "
-                          "its own; state that they go together, by Moreau's law");
         ImpactOutcome found;
         if (!hit_.empty() || !both_ways_.empty()) {
             std::vector<Joint> all;
@@ -119,6 +113,12 @@ private:
             found = impact(held_.with(both_ways_, {}), before_, all);
             if (!found.is_found)
                 return refuse("no velocities behind the impact fulfil the joints, which lose rank there");
+            const bool is_named =
+                std::ranges::all_of(hit_, [&](int j) { return model_.joints()[j].impact->goes_together; });
+            if (hit_.size() > 1 && !found.are_apart && !is_named)
+                return refuse(
+                    "they are hit at the same instant, where what happens is a law of its own; state "
+                    "that they go together, by Moreau's law");
             outcome_.V = found.V;
             outcome_.jumps = true;
         } else {
