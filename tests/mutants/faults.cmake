@@ -1947,3 +1947,27 @@ livens_mutant(NAME load_beyond_its_event
               NEW [[inner->forces.record(tape, factor);]]
               TESTS_OF unit_io
               MUST_FAIL DecidedEvents.EndLoadsAndTakeWhatActsTogether)
+
+# Impacts without a bounce.
+livens_mutant(NAME stops_without_restitution
+              FILE dynamics/instant/impact.cpp
+              OLD [[least[i] = stops[i].impact->restitution * std::max(-outcome.stops[i].approach, 0.0);]]
+              NEW [[least[i] = 0;]]
+              TESTS_OF unit_io
+              MUST_FAIL Stops.OfFullRestitutionLoseNothing)
+
+# Stops that hold whatever pulls.
+livens_mutant(NAME stops_that_pull
+              FILE multibody/joints/stops.cpp
+              OLD [[out[0] = side * reactions[0];]]
+              NEW [[out[0] = -std::abs(side * reactions[0]);]]
+              TESTS_OF unit_io
+              MUST_FAIL Stops.OpenWhereTheyWouldPull)
+
+# Bounces followed for ever.
+livens_mutant(NAME bounces_without_rest
+              FILE spacetime/phases/contacts.cpp
+              OLD [[one.closes = hop < lowest_hop * stop.rows[0].scale || rebound <= slow;]]
+              NEW [[one.closes = hop < 0 || rebound <= slow;]]
+              TESTS_OF unit_io
+              MUST_FAIL Stops.BallComesToRestBehindBouncesWithoutEnd)

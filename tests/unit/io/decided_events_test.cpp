@@ -118,6 +118,31 @@ until = "rod.force_z < 0"
     EXPECT_NEAR(motion.at_end(motion.n_elements()).X[0](2, 0), cosine, 1e-11);
 }
 
+/// The same on stated elements, wherever the zero lies among them: reactions are of velocities, and those of
+/// polynomials and of states differ at element ends.
+TEST(DecidedEvents, AreFoundWhereReactionsChangeTheirSignInTheJump)
+{
+    for (const int n : {20, 40, 49, 50, 51, 60, 80}) {
+        const SolvedScenario s = solved(R"(format = 1
+gravity = [0, 0, -9.81]
+body = [{ name = "ball", shape = { point = true }, mass = 3, position = [0, 0, 1], velocity = [1, 0, 0] }]
+
+[[joint]]
+name = "rod"
+type = "rod"
+points = [[0, 0, 0], [0, 0, 0]]
+between = ["world", "ball"]
+
+[time]
+end = 5
+until = "rod.force_z < 0"
+elements = )" + std::to_string(n));
+        const Motion& motion = s.solution.motion;
+        ASSERT_EQ(s.solution.events.size(), 1u) << n;
+        EXPECT_NEAR(motion.at_end(motion.n_elements()).X[0](2, 0), 2.0 / 3 + 1 / (3 * 9.81), 1e-7) << n;
+    }
+}
+
 std::string door(const std::string& latch, const std::string& until, const std::string& time)
 {
     return R"(format = 1
