@@ -1155,8 +1155,8 @@ livens_mutant(NAME extremes_are_those_of_samples
               MUST_FAIL Extremes.AreThoseOfTheFormula)
 # States between element ends that are left where polynomials have them, and multipliers of nodes there.
 livens_mutant(NAME states_between_ends_stay_open
-              FILE diagnostics/accelerations.cpp
-              OLD [[instant.close(solved);]]
+              FILE dynamics/instant/settled_instant.cpp
+              OLD [[system_.close(solved_);]]
               NEW [[(void)0;]]
               TESTS_OF unit_spacetime
               MUST_FAIL Accelerations.StandOnTheJointsBetweenElementEnds)
@@ -1182,8 +1182,8 @@ livens_mutant(NAME stated_velocities_not_kept
               MUST_FAIL StatedVelocities.AreKeptWhereARateMovesTheStart)
 livens_mutant(NAME accelerations_forget_what_turns
               FILE diagnostics/accelerations.cpp
-              OLD [[A[12 * b + i] + phase.instant.centripetal()[12 * b + i];]]
-              NEW [[-A[12 * b + i] + phase.instant.centripetal()[12 * b + i];]]
+              OLD [[A[12 * b + i] + phase.instant.system().centripetal()[12 * b + i];]]
+              NEW [[-A[12 * b + i] + phase.instant.system().centripetal()[12 * b + i];]]
               TESTS_OF unit_spacetime
               MUST_FAIL Accelerations.AreWhatForcesMake)
 
