@@ -260,7 +260,11 @@ std::vector<int> EventWatch::holding(const Motion& motion, std::span<const int> 
     std::vector<int> all;
     for (const int e : events)
         if (holds_at(e, now)) all.push_back(e);
-    return all;
+    if (!all.empty()) return all;
+    // Where rounding decides, the one that is nearest.
+    const State end = motion.at_end(motion.n_elements());
+    const auto nearest = std::ranges::max_element(events, {}, [&](int e) { return margin(e, end); });
+    return {*nearest};
 }
 
 }   // namespace livens::inline spacetime_internal

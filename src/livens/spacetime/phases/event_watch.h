@@ -36,7 +36,7 @@ public:
         double margin, rate;
     };
     Border border_of(const Motion& motion, std::span<const int> events) const;
-    /// Those of them that are true just behind the end.
+    /// Those of them that are true just behind the end; the nearest, if none is.
     std::vector<int> holding(const Motion& motion, std::span<const int> events) const;
     /// Whether the condition of an event holds in the state where the phase begins.
     bool holds_now(int event) const { return holds_at(event, start_); }

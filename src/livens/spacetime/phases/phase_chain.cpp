@@ -227,13 +227,10 @@ private:
     bool end_at_event(const EventWatch& watch, const Way& at, std::vector<int>& fired, Solution& next) const
     {
         const double start = next.motion.mesh.ends[next.motion.n_elements() - 1], end = next.motion.end();
-        double low = start, high = std::numeric_limits<double>::infinity(), nearest = high;
-        int idle = 0;   // turns that came no nearer: what is left is rounding
-        for (int i = 0; i < most_turns && idle < 3; ++i) {
+        double low = start, high = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < most_turns; ++i) {
             const double now = next.motion.end();
             const EventWatch::Border border = watch.border_of(next.motion, fired);
-            idle = std::abs(border.margin) < 0.5 * nearest ? 0 : idle + 1;
-            nearest = std::min(nearest, std::abs(border.margin));
             (border.margin > 0 ? high : low) = now;
             double zero = border.rate > 0 ? now - border.margin / border.rate : low;
             if (std::abs(zero - now) <= std::max(1e-13 * (end - start), 4e-16 * std::abs(now))) break;
@@ -244,7 +241,7 @@ private:
             }
             if (!(zero > start) || !solve_last(watch.model(), at, start, zero, next)) break;
         }
-        if (const std::vector<int> now = watch.holding(next.motion, fired); !now.empty()) fired = now;
+        fired = watch.holding(next.motion, fired);
         return true;
     }
 
