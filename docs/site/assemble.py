@@ -441,13 +441,13 @@ def add_reference(site: Site) -> None:
 
 
 PYTHON = {
-    "Models": ["Model", "Added", "load", "from_urdf", "from_mjcf", "Body", "Point", "Joint", "Drive", "Load", "Sensor", "Section", "Entry", "Names",
+    "Models": ["Model", "Added", "load", "from_urdf", "from_mjcf", "Body", "Point", "Joint", "Drive", "Stop", "Event", "Load", "Sensor", "Section", "Entry", "Names",
                "Parameters"],
     "Shapes and tables": ["Shape", "box", "sphere", "cylinder", "capsule", "cone", "ellipsoid", "mesh", "parts", "point",
                           "tube", "table", "visual"],
     "Solving": ["solve", "solve_many", "Condition", "state", "positions", "momenta", "unknown"],
     "Methods": ["Method", "Auto", "Lobatto", "Radau", "Mixed", "Midpoint", "Endpoint", "MethodOptions"],
-    "Solutions": ["Solution", "load_solution", "Series", "BodySeries", "JointSeries", "LoadSeries", "PointSeries", "SensorSeries",
+    "Solutions": ["Solution", "SolvedEvent", "load_solution", "Series", "BodySeries", "JointSeries", "LoadSeries", "PointSeries", "SensorSeries",
                   "ReadingSeries", "Parts", "Peak", "Extremes", "compare", "Comparison", "BodyState"],
     "States": ["Coordinates", "MechanismState", "PlacedBody", "PlacedJoint", "PlacedPoint", "reach"],
     "Rest and small motions": ["Equilibrium", "RestBody", "RestJoint", "Linearisation", "StateMatrices", "Modes",
