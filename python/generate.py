@@ -165,7 +165,7 @@ class Writer:
         return [key for key in table["keys"] + own if key["name"] != table["chooser"] and key["form"] != NONE]
 
     def handles(self):
-        for kind in ("body", "point", "joint", "drive", "stop", "load", "sensor", "event"):
+        for kind in ("body", "point", "joint", "drive", "stop", "load", "sensor", "controller", "event"):
             table = self.children[kind]
             self.line(f"\n\nclass {kind.capitalize()}(Entry):")
             self.line(wrapped(f'"""{"An" if kind == "event" else "A"} {kind} of a model. {table["doc"]}', "    "))
@@ -190,7 +190,7 @@ class Writer:
     def adder(self, kind, table, word, doc):
         keys = self.keys(table, word)
         names = [key["name"] for key in keys]
-        front = [f"name: str{'' if kind in ('body', 'point', 'sensor') else ' | None'}"]
+        front = [f"name: str{'' if kind in ('body', 'point', 'sensor', 'controller') else ' | None'}"]
         pair = next((p for p in PAIRS if p in names), None)
         one = next((key for key in keys if key["name"] in REFERENCES and key["required"]), None)
         if kind == "body":
@@ -200,7 +200,7 @@ class Writer:
         elif one is not None:
             front.append(f"{one['name']}: {REFERENCES[one['name']]}" + (" | None = None" if one["told_by"] else ""))
         in_front = {"name", "shape" if kind == "body" else "", one["name"] if one is not None and pair is None else ""}
-        behind = [key for key in keys if kind == "point" and key["name"] == "position" or key["form"] == FACTORS]
+        behind = [key for key in keys if kind == "point" and key["name"] == "position" or kind == "joint" and key["form"] == FACTORS]
         front += [f"{key['name']}: {written(key)} | None = None" for key in behind]
         in_front |= {key["name"] for key in behind}
         rest = [key for key in keys if key["name"] not in in_front]
@@ -257,6 +257,7 @@ class Writer:
         self.adder("point", self.children["point"], "", "a place of a body with a name")
         self.adder("event", self.children["event"], "", "a condition of the motion that is reported, or ends it")
         self.adder("stop", self.children["stop"], "", "a limit that nothing passes")
+        self.adder("controller", self.children["controller"], "", "states with rates of their own")
         for kind in ("joint", "drive", "load", "sensor"):
             table = self.children[kind]
             for k in table["kinds"]:

@@ -16,14 +16,25 @@ namespace livens::program {
 
 namespace {
 
+/// Without what stands for controllers.
+std::size_t n_bodies(const Model& model)
+{
+    return static_cast<std::size_t>(std::ranges::count(model.bodies(), false, &Body::holds_states));
+}
+std::size_t n_loads(const Model& model)
+{
+    return static_cast<std::size_t>(std::ranges::count_if(
+        model.loads(), [](const Load& load) { return load.type != controller_type; }));
+}
+
 std::string json_of(const Scenario& scenario, const Model& model, const ConsistentStart& assembly,
                     const std::vector<Diagnostic>& warnings)
 {
     JsonWriter json(2);
     json.begin_object();
     json.member("valid", true).member("title", scenario.title);
-    json.member("bodies", scenario.model.n_bodies()).member("joints", scenario.model.joints().size());
-    json.member("loads", scenario.model.loads().size()).member("rows", scenario.model.n_rows());
+    json.member("bodies", n_bodies(scenario.model)).member("joints", scenario.model.joints().size());
+    json.member("loads", n_loads(scenario.model)).member("rows", scenario.model.n_rows());
     json.member("degrees_of_freedom", assembly.degrees_of_freedom);
     json.member("start", start_of(scenario.time)).member("end", end_of(scenario.time));
     if (const auto* mesh = std::get_if<TimeMesh>(&scenario.time))
@@ -160,10 +171,10 @@ int check_command(const std::string& file, const Common& common)
     std::string text =
         fmt::format("{}: no errors\n  {}, {} with {}, {}, {} of freedom\n"
                     "  {:.6g} s to {:.6g} s {}\n  at least {} of memory{}\n",
-                    plain(file), counted(scenario.model.bodies().size(), "body", "bodies"),
+                    plain(file), counted(n_bodies(scenario.model), "body", "bodies"),
                     counted(scenario.model.joints().size(), "joint", "joints"),
                     counted(static_cast<std::size_t>(scenario.model.n_rows()), "constraint", "constraints"),
-                    counted(scenario.model.loads().size(), "load", "loads"),
+                    counted(n_loads(scenario.model), "load", "loads"),
                     counted(static_cast<std::size_t>(assembly.degrees_of_freedom), "degree", "degrees"),
                     start_of(scenario.time), end_of(scenario.time), division_of(scenario),
                     bytes_in_words(memory_needed(scenario).most()),

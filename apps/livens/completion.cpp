@@ -249,7 +249,7 @@ int print_names(const std::vector<std::string>& names)
 
 int completion_command(const CompletionArguments& arguments, const std::vector<CommandInfo>& commands)
 {
-    if (!arguments.bodies.empty()) return print_names(read_run(arguments.bodies).body_names);
+    if (!arguments.bodies.empty()) return print_names(read_run(arguments.bodies).told_bodies());
     if (!arguments.joints.empty()) return print_names(read_run(arguments.joints).joint_names);
     if (!arguments.sensors.empty()) {
         const Scenario scenario = scenario_of_run(read_run(arguments.sensors), arguments.sensors);

@@ -115,9 +115,9 @@ Comparison compare(const DiffArguments& arguments, const Run& a, const Run& b)
     Comparison c;
     c.times = common_times(a, b);
     if (c.times.empty()) throw failure(exit_usage, "the two runs have no output time in common");
-    for (const std::string& name : a.body_names)
+    for (const std::string& name : a.told_bodies())
         (place_of(b.body_names, name) < b.body_names.size() ? c.bodies : c.alone).push_back(name);
-    for (const std::string& name : b.body_names)
+    for (const std::string& name : b.told_bodies())
         if (place_of(a.body_names, name) == a.body_names.size()) c.alone.push_back(name);
     const Model first = scenario_of_run(a, arguments.first).model;
     const Model second = scenario_of_run(b, arguments.second).model;

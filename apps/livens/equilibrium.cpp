@@ -13,6 +13,7 @@
 #include "interrupt.h"
 #include "livens/base/elementary.h"
 #include "livens/io/known_state.h"
+#include "livens/multibody/controllers.h"
 #include "livens/multibody/motion.h"
 #include "rest.h"
 #include "summary.h"
@@ -48,6 +49,7 @@ void add_bodies(JsonWriter& json, const Found& found)
 {
     json.key("bodies").begin_array();
     for (int b = 0; b < found.model().n_bodies(); ++b) {
+        if (found.model().bodies()[b].holds_states()) continue;
         const Matrix34& X = found.at.state.X[b];
         json.begin_object().member("name", found.model().body_name(b));
         json.key("position").value(numbers(X.column(0)));
@@ -58,6 +60,10 @@ void add_bodies(JsonWriter& json, const Found& found)
         json.end_object();
     }
     json.end_array();
+    json.key("states").begin_object();
+    for (const NamedState& state : states_in(found.model(), found.at.state.V))
+        json.member(state.name, state.value);
+    json.end_object();
 }
 
 void add_joints(JsonWriter& json, const Found& found)
@@ -143,7 +149,10 @@ std::string text_of(const Found& found, const std::string& file)
     summary.figure("residual",
                    is_rounding ? "rounding" : fmt::format("{:.1e} of the largest forces", at.residual));
     for (int b = 0; b < found.model().n_bodies(); ++b)
-        summary.figure(plain(found.model().body_name(b)), words_of_body(found, b));
+        if (!found.model().bodies()[b].holds_states())
+            summary.figure(plain(found.model().body_name(b)), words_of_body(found, b));
+    for (const NamedState& state : states_in(found.model(), at.state.V))
+        summary.figure(plain(state.name), fmt::format("{:.9g}", state.value));
     for (int j = 0; at.is_found && j < static_cast<int>(found.model().joints().size()); ++j)
         summary.figure(plain(found.model().joints()[j].name), words_of_joint(found, j));
     for (const std::string& note : at.notes) summary.figure("note", plain(note));

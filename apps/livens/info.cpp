@@ -34,7 +34,7 @@ std::string json_of(const RunHead& head)
     write_found_errors(json, run);
     write_events(json, run);
     json.member("output_times", head.n_output_times);
-    names(json, "bodies", run.body_names);
+    names(json, "bodies", run.told_bodies());
     names(json, "joints", run.joint_names);
     names(json, "notes", run.notes);
     json.key("options").raw(run.resolved.starts_with('{') ? run.resolved : "null");
@@ -64,7 +64,7 @@ int info_command(const std::string& file, const Common& common)
     Summary summary(terminal_of(STDOUT_FILENO));
     add_verdict(summary, run, head.end);
     summary.figure("written by", "livens " + plain(run.version));
-    summary.figure("bodies", list(run.body_names));
+    summary.figure("bodies", list(run.told_bodies()));
     if (!run.joint_names.empty()) summary.figure("joints", list(run.joint_names));
     summary.figure("time", fmt::format("{:.6g} s to {:.6g} s, {} output times", head.start, head.end,
                                        head.n_output_times));

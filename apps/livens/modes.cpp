@@ -46,6 +46,7 @@ void add_mode(JsonWriter& json, const Rest& rest, const VibrationMode& mode)
     json.member("real", mode.s.real()).member("imaginary", mode.s.imag());
     json.key("bodies").begin_array();
     for (int b = 0; b < rest.model().n_bodies(); ++b) {
+        if (rest.model().bodies()[b].holds_states()) continue;
         json.begin_object().member("name", rest.model().body_name(b));
         add_complex(json, "displacement", mode.bodies[b].displacement);
         if (!rest.model().bodies()[b].is_point) add_complex(json, "rotation", mode.bodies[b].rotation);
@@ -114,11 +115,11 @@ std::string json_of(const Rest& rest, const std::vector<Diagnostic>& warnings)
     return json.text() + "\n";
 }
 
-/// The body that goes farthest, by lengths or rad.
+/// The body that goes farthest, by lengths or rad, in words.
 std::string most_moved(const Rest& rest, const VibrationMode& mode)
 {
     int most = 0;
-    double largest = -1;
+    double largest = rest.linear.states.n() > 0 ? 0 : -1;
     const auto size = [](const std::array<std::complex<double>, 3>& v) {
         return std::sqrt(std::norm(v[0]) + std::norm(v[1]) + std::norm(v[2]));
     };
@@ -129,12 +130,13 @@ std::string most_moved(const Rest& rest, const VibrationMode& mode)
         largest = moved;
         most = b;
     }
-    return plain(rest.model().body_name(most));
+    if (largest == 0 && rest.linear.states.n() > 0) return "states of controllers";
+    return "'" + plain(rest.model().body_name(most)) + "' most";
 }
 
 std::string words_of(const Rest& rest, const VibrationMode& mode)
 {
-    const std::string body = "'" + most_moved(rest, mode) + "' most";
+    const std::string body = most_moved(rest, mode);
     const double zeta = mode.damping_ratio();
     if (mode.s == 0.0) return "not restored: " + body;
     if (mode.s.imag() == 0)

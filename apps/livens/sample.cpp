@@ -29,7 +29,7 @@ int index_of(const SampleArguments& arguments, const Run& run, const Model& mode
 {
     if (!arguments.sensor.empty()) return 0;
     const bool is_body = arguments.joint.empty();
-    const std::vector<std::string>& names = is_body ? run.body_names : run.joint_names;
+    const std::vector<std::string> names = is_body ? run.told_bodies() : run.joint_names;
     const std::string& name = is_body ? arguments.body : arguments.joint;
     const auto found = std::ranges::find(names, name);
     if (found == names.end()) throw no_such(is_body ? "body" : "joint", name, model);

@@ -52,15 +52,18 @@ Model with_all_readings(const Model& model)
         if (point.body != world && !has(point.name))
             all.add_sensor(point_sensor(point.name, point.body, point.position, model.start().X));
     for (int l = 0; l < static_cast<int>(model.loads().size()); ++l)
-        if (const Load& load = model.loads()[static_cast<std::size_t>(l)]; !has(load.name))
+        if (const Load& load = model.loads()[static_cast<std::size_t>(l)];
+            load.type != controller_type && !has(load.name))
             all.add_sensor(load_sensor(load.name, l, load));
     return all;
 }
 
 Failure no_such(std::string_view kind, const std::string& name, const Model& model)
 {
+    std::vector<Body> bodies = model.bodies();
+    std::erase_if(bodies, [](const Body& body) { return body.holds_states(); });
     const std::pair<std::string_view, std::vector<std::string>> kinds[] = {
-        {"body", names_of(model.bodies())},
+        {"body", names_of(bodies)},
         {"joint", names_of(model.joints())},
         {"sensor", names_of(with_all_readings(model).sensors())}};
     std::string known;

@@ -441,7 +441,7 @@ def add_reference(site: Site) -> None:
 
 
 PYTHON = {
-    "Models": ["Model", "Added", "load", "from_urdf", "from_mjcf", "Body", "Point", "Joint", "Drive", "Stop", "Event", "Load", "Sensor", "Section", "Entry", "Names",
+    "Models": ["Model", "Added", "load", "from_urdf", "from_mjcf", "Body", "Point", "Joint", "Drive", "Stop", "Event", "Controller", "Load", "Sensor", "Section", "Entry", "Names",
                "Parameters"],
     "Shapes and tables": ["Shape", "box", "sphere", "cylinder", "capsule", "cone", "ellipsoid", "mesh", "parts", "point",
                           "tube", "table", "visual"],

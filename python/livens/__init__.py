@@ -25,7 +25,7 @@ from ._errors import (Diagnostic, InputError, ModelWarning, Place, ResultFileErr
 from ._explain import explain
 from ._export import Comparison, compare
 from ._generated import *   # noqa: F403  the shapes and methods that the schema has, see __all__ there
-from ._generated import Body, Drive, Event, Joint, Load, MethodOptions, Point, Sensor, Stop
+from ._generated import Body, Controller, Drive, Event, Joint, Load, MethodOptions, Point, Sensor, Stop
 from ._functions import BodyState
 from ._import import from_urdf
 from ._mujoco import from_mjcf
@@ -44,7 +44,7 @@ from ._state import Coordinates, MechanismState, PlacedBody, PlacedJoint, Placed
 from ._values import Condition, Method, Shape, momenta, positions, state, table, unknown, visual
 
 __all__ = [
-    "Added", "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Coordinates", "Diagnostic", "Drive", "Entry", "Equilibrium", "Event",
+    "Added", "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Controller", "Coordinates", "Diagnostic", "Drive", "Entry", "Equilibrium", "Event",
     "EquilibriumError", "Extremes", "InputError", "Joint", "JointSeries", "Linearisation", "Load", "LoadSeries", "MechanismState", "Method",
     "MethodOptions", "ModeBody", "ModeJoint", "Model", "ModelWarning", "Modes", "Names", "Parameters", "Parts", "Peak",
     "Place", "PlacedBody", "PlacedJoint", "PlacedPoint", "Point", "PointSeries",

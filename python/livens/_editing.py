@@ -12,7 +12,7 @@ from . import _core
 from ._entries import Entry, Names, RootSection, Section, default_name, unknown_name
 from ._errors import Diagnostic, InputError, ModelWarning, fault, raised, stack_level, user_place
 from ._functions import adapted
-from ._generated import Adders, Body, Drive, Event, Joint, Load, Point, Sensor, Stop
+from ._generated import Adders, Body, Controller, Drive, Event, Joint, Load, Point, Sensor, Stop
 from ._included import has_point
 from ._places import arranged, diagnostic_of, faults_in, key_below, of_table, path_at, path_of, store, words_in
 from ._rotations import oriented, with_rotation
@@ -21,7 +21,7 @@ from ._tree import KINDS, Table, diagnostics_of_text, frozen, plain, schema, tom
 from ._values import Shape
 
 _TYPES: dict[str, type[Entry]] = {"body": Body, "point": Point, "joint": Joint, "drive": Drive, "load": Load, "sensor": Sensor,
-                                "event": Event, "stop": Stop}
+                                "event": Event, "stop": Stop, "controller": Controller}
 _MISSING = object()
 _INSTEAD = {   # keys that say the same in other ways: assigning one takes the others away
     "body": (("mass", "density"), ("directors", "quaternion", "rotation_vector"),

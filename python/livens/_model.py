@@ -14,7 +14,7 @@ from . import _core
 from ._editing import Tree
 from ._entries import Entry, Names, Section, default_name, unknown_name
 from ._errors import Diagnostic, SlowWarning, SolveWarning, fault, file_name, make_way, stack_level, user_place
-from ._generated import Body, Drive, Event, Joint, Load, Point, Sensor, Stop
+from ._generated import Body, Controller, Drive, Event, Joint, Load, Point, Sensor, Stop
 from ._included import Added, as_part, files_below, files_of
 from ._meshes import MeshFile, named_meshes
 from ._other_names import of_model
@@ -163,6 +163,11 @@ class Model(Tree):
     def sensors(self) -> Names[Sensor]:
         """All sensors by name."""
         return Names(self, "sensor", Sensor)
+
+    @property
+    def controllers(self) -> Names[Controller]:
+        """All controllers by name: states with rates of their own."""
+        return Names(self, "controller", Controller)
 
     @property
     def events(self) -> Names[Event]:

@@ -18,7 +18,7 @@ from ._values import Shape
 
 INTEGER, ROW, TABLE, TABLES = 3, 9, 11, 12   # of Form in schema.h
 NUMERIC = (INTEGER, 4, ROW, 10)
-KINDS = ("body", "point", "joint", "drive", "stop", "load", "sensor", "event")   # arrays of tables in the root
+KINDS = ("body", "point", "joint", "drive", "stop", "load", "sensor", "controller", "event")   # arrays of tables in the root
 
 
 class Table(dict[str, Any]):

@@ -10,6 +10,7 @@
 
 #include "livens/diagnostics/quantities.h"
 #include "livens/io/known_state.h"
+#include "livens/multibody/controllers.h"
 #include "livens/multibody/motion.h"
 #include "livens/statics/equilibrium.h"
 #include "result.h"
@@ -68,7 +69,8 @@ nb::list names_of_joints(const Model& model)
 nb::list names_of_bodies(const Model& model)
 {
     nb::list all;
-    for (int b = 0; b < model.n_bodies(); ++b) all.append(model.body_name(b));
+    for (int b = 0; b < model.n_bodies(); ++b)
+        if (!model.bodies()[static_cast<std::size_t>(b)].holds_states()) all.append(model.body_name(b));
     return all;
 }
 
@@ -93,6 +95,9 @@ nb::dict found(const Model& model, const Equilibrium& at)
     d["residual"] = at.residual;
     d["notes"] = at.notes;
     Vectors positions, quaternions, coordinates, forces, torques, efforts, tensions;
+    nb::dict states;
+    for (const NamedState& state : states_in(model, at.state.V)) states[state.name.c_str()] = state.value;
+    d["states"] = states;
     for (int b = 0; b < model.n_bodies(); ++b) {
         const Matrix34& X = at.state.X[static_cast<std::size_t>(b)];
         append(positions, X.column(0));

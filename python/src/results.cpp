@@ -145,6 +145,7 @@ nb::list loads(const Result& r)
 {
     nb::list all;
     for (const Load& load : r.scenario->model.loads()) {
+        if (load.type == controller_type) continue;
         nb::list components;
         for (const LoadReading& c : load.readings) components.append(nb::make_tuple(c.name, c.unit));
         components.append(nb::make_tuple("power", "W"));
@@ -400,7 +401,7 @@ void add_results(nb::module_& m)
         .def_prop_ro("resolved", [](const Result& r) { return r.run.resolved; })
         .def_prop_ro("solve_seconds", [](const Result& r) { return r.solve_seconds; })
         .def_prop_ro("estimate_seconds", [](const Result& r) { return r.estimate_seconds; })
-        .def_prop_ro("body_names", [](const Result& r) { return r.run.body_names; })
+        .def_prop_ro("body_names", [](const Result& r) { return r.run.told_bodies(); })
         .def_prop_ro("joints", &joints)
         .def_prop_ro("sensors", &sensors)
         .def_prop_ro("points", &points)

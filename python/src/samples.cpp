@@ -213,6 +213,7 @@ Model with_load_sensors(const Model& model)
 {
     Model all = model;
     for (int i = 0; i < static_cast<int>(model.loads().size()); ++i) {
+        if (model.loads()[static_cast<std::size_t>(i)].type == controller_type) continue;
         std::string name = "load " + std::to_string(i);
         while (std::ranges::any_of(model.sensors(), [&](const Sensor& s) { return s.name == name; }))
             name += "'";

@@ -43,6 +43,10 @@ public:
         double kinetic = 0, legendre = 0;   // T*(P) = 1/2 tr(P m^-1 P^T) and tr(P X'^T)
         if (sampler_.has_momenta()) sampler_.momenta(element, k, P_);
         for (std::size_t b = 0; b < X_.size(); ++b) {
+            if (model_.bodies()[b].holds_states()) {
+                P_[b] = {};
+                continue;
+            }
             // Without a field of its own P is that of dX/dt, whose mass matrix may be singular.
             if (!sampler_.has_momenta()) P_[b] = V_[b] * model_.bodies()[b].mass;
             const double product = dot(P_[b], V_[b]);

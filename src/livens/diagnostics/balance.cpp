@@ -109,9 +109,7 @@ private:
     void append_state(Balance& piece)
     {
         const std::span<const Matrix34> V = velocities_at_end(motion_, end_);
-        const std::span<const Matrix34> P =
-            std::span<const Matrix34>(motion_.momenta)
-                .subspan(static_cast<std::size_t>(end_) * X_.size(), X_.size());
+        const std::vector<Matrix34> P = momenta_of_matter(motion_.momenta, end_);
         positions_at_end(motion_, end_, X_);
         if (const int impact = motion_.impacts.at(end_); impact >= 0) add_impact(impact, V, P);
         const Instant at{motion_.mesh.ends[end_], end_ == motion_.n_elements() ? Side::left : Side::right};
@@ -137,6 +135,14 @@ private:
         for (const Matrix34& p : P) momentum += norm(p.column(0));
         raise_to(figures_.largest_momentum, momentum);
     }
+    std::vector<Matrix34> momenta_of_matter(const std::vector<Matrix34>& all, int end) const
+    {
+        const auto first = all.begin() + static_cast<std::ptrdiff_t>(end) * static_cast<std::ptrdiff_t>(X_.size());
+        std::vector<Matrix34> P(first, first + static_cast<std::ptrdiff_t>(X_.size()));
+        for (std::size_t b = 0; b < P.size(); ++b)
+            if (model_.bodies()[b].holds_states()) P[b] = {};
+        return P;
+    }
     /// What an impact takes is no error of the motion, and what it gives comes from joints.
     void add_impact(int impact, std::span<const Matrix34> V, std::span<const Matrix34> P)
     {
@@ -144,7 +150,7 @@ private:
             return std::span<const Matrix34>(all).subspan(static_cast<std::size_t>(impact) * X_.size(),
                                                           X_.size());
         };
-        const std::span<const Matrix34> P_before = before(motion_.impacts.momenta);
+        const std::vector<Matrix34> P_before = momenta_of_matter(motion_.impacts.momenta, impact);
         total_.work +=
             kinetic_energy(model_, X_, V) - kinetic_energy(model_, X_, before(motion_.impacts.velocities));
         total_.linear += linear_momentum(P) - linear_momentum(P_before);

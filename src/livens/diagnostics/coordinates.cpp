@@ -154,7 +154,8 @@ void append_load(const Load& load, const State& state, Side side, std::span<cons
 {
     const LoadArguments arguments = load_arguments(load, {state.t, side}, state.X, state.V, angles);
     for (const LoadReading& reading : load.readings) values.push_back(reading.value(arguments));
-    values.push_back(load_power(load, arguments));
+    // Of a controller nothing but its numbers, if it has some.
+    if (load.type != controller_type || load.readings.empty()) values.push_back(load_power(load, arguments));
 }
 
 void append_energy(const Model& model, int b, const State& state, std::vector<double>& values)

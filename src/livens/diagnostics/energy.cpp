@@ -14,7 +14,9 @@ double kinetic_energy(const Model& model, std::span<const Matrix34> X, std::span
     assert(X.size() == V.size() && static_cast<int>(V.size()) == model.n_bodies());
     // Of bodies T does not depend on X in these coordinates (P7); of rotors it does.
     double energy = rotor_energy(rotors_of(model), X, V);
-    for (int b = 0; b < model.n_bodies(); ++b) energy += 0.5 * dot(V[b] * model.bodies()[b].mass, V[b]);
+    for (int b = 0; b < model.n_bodies(); ++b)
+        if (const Body& body = model.bodies()[b]; !body.holds_states())
+            energy += 0.5 * dot(V[b] * body.mass, V[b]);
     return energy;
 }
 

@@ -169,7 +169,9 @@ void ErrorMeter::add(const std::vector<Unseen>& unseen, int first, int last)
         }
         for (std::size_t b = 0; b < n; ++b) {
             const std::size_t at = static_cast<std::size_t>(end) * n + b;
-            const double shift = shifts_[b].rate * t - shifts_[b].moment,
+            const double speed = model_.bodies()[b].state_speed;   // of states, which are velocities
+            const double shift = speed > 0 ? shifts_[b].rate * estimate_.length / speed
+                                           : shifts_[b].rate * t - shifts_[b].moment,
                          turn = turns_[b].rate * t - turns_[b].moment;
             estimate_.position[at] += shift;
             estimate_.orientation[at] += turn;
@@ -203,6 +205,8 @@ double ErrorEstimate::error(int end) const
 BodyGap gap_between(const State& a, const State& b, const Body& body, int index, double length)
 {
     const Matrix34 dX = a.X[index] - b.X[index], dV = a.V[index] - b.V[index];
+    // Of states: by their size, and where the body has come to means nothing.
+    if (body.holds_states()) return {norm(dV.column(0)) / body.state_speed, 0, norm(dV.column(0)), 0};
     const Vector4 centre = point(mass_properties(body.mass).center_of_mass);
     // the chord of a turn by phi is 2 sqrt(2) sin(phi / 2)
     const double chord = norm(directors(dX)) / (2 * std::sqrt(2.0));

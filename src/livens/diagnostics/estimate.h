@@ -13,7 +13,9 @@ namespace [[gnu::visibility("default")]] livens {
 
 /// How far two states of one body are apart.
 struct BodyGap {
-    double position = 0;      ///< between the centres of mass, in lengths of the model
+    /// Between the centres of mass, in lengths of the model; of a body that holds states between these, by
+    /// their size.
+    double position = 0;
     double orientation = 0;   ///< rad; 0 for point masses
     double velocity = 0;      ///< m/s, of the centre of mass
     double rate = 0;          ///< rad/s, of the directors

@@ -95,7 +95,7 @@ Quantities::Quantities(const Model& model, const Motion& motion, const std::vect
       has_reactions_(!model.joints().empty() && !sample_joints(model, motion, motion.start()).empty())
 {
     for (const char* what : {"kinetic", "potential", "energy"}) add(QuantityOf::model, 0, "", what, "J");
-    for (std::size_t b = 0; b < body_names.size(); ++b)
+    for (std::size_t b = 0; b < body_names.size() && !model.bodies()[b].holds_states(); ++b)
         for (const BodyQuantity& q : body_quantities)
             add(QuantityOf::body, static_cast<int>(b), body_names[b], q.what, q.unit, q.size);
     add_points();

@@ -33,6 +33,8 @@ std::vector<Matrix34> momenta_at(const Model& model, const Motion& motion, const
     } else {
         for (int b = 0; b < motion.n_bodies; ++b) P[b] = state.V[b] * model.bodies()[b].mass;
     }
+    for (int b = 0; b < motion.n_bodies; ++b)
+        if (model.bodies()[b].holds_states()) P[b] = {};
     return P;
 }
 

@@ -131,6 +131,7 @@ void LoadSupply::take_point(const MotionPoints& set, int k)
 void LoadSupply::add_load(int l, Instant at, Supply& now) const
 {
     const Load& load = model_.loads()[l];
+    if (acts_on_states(model_, load)) return;
     const LoadArguments now_at = arguments(l, at);
     LoadForces F(load.n_acted);
     load.forces(now_at, F);
@@ -157,7 +158,7 @@ Supply LoadSupply::all_stiffness(Instant at, double h) const
     Supply all;
     for (int l = 0; l < static_cast<int>(model_.loads().size()); ++l) {
         const Load& load = model_.loads()[l];
-        if (!load.depends_on_X && !load.depends_on_V) continue;
+        if (acts_on_states(model_, load) || (!load.depends_on_X && !load.depends_on_V)) continue;
         const LoadArguments now = arguments(l, at);
         LoadTangent tangent(load.bodies.size(), load.n_acted);
         load.tangent(now, tangent);

@@ -27,9 +27,23 @@ extern const int format_minor;           ///< additions only; grows with the new
 struct PartNames {
     std::vector<std::string> body_names;
     std::vector<bool> body_is_point;
+    /// Those that stand for states of controllers, and are nothing to be told of; empty: there are none.
+    std::vector<bool> body_holds_states;
     std::vector<Vector3> centers_of_mass;   ///< body coordinates
     std::vector<std::string> joint_names;
     std::vector<std::string> row_labels;   ///< "elbow: x"
+
+    /// The first of them are to be told of: what holds states comes last.
+    std::size_t n_told_bodies() const
+    {
+        std::size_t n = body_names.size();
+        while (n > 0 && n <= body_holds_states.size() && body_holds_states[n - 1]) --n;
+        return n;
+    }
+    std::vector<std::string> told_bodies() const
+    {
+        return {body_names.begin(), body_names.begin() + static_cast<std::ptrdiff_t>(n_told_bodies())};
+    }
 };
 
 /// What was found of unknown numbers, in SI units.

@@ -30,6 +30,10 @@ std::vector<double> Model::event_times() const
     };
     for (const Joint& joint : joints_) add(joint);
     for (const Load& load : loads_) add(load);
+    for (const Sampling& sampling : samplings_) {
+        const std::vector<double> instants = sampling.instants();
+        all.insert(all.end(), instants.begin(), instants.end());
+    }
     return ascending(std::move(all));
 }
 

@@ -3,11 +3,19 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "livens/base/linear.h"
 #include "livens/multibody/mass_properties.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+/// A state of a controller that a body holds, as a component of its velocity.
+struct HeldState {
+    std::string name;   ///< "pid.i"
+    double unit = 1;    ///< m/s of a state that is one
+    Vector3 along{};    ///< a unit vector, perpendicular to those of other states of the body
+};
 
 /// A rigid body is a reference point and three directors, X = [phi d1 d2 d3] (P3).
 /// A point mass has no directors: its X, V and m are zero outside the first column (and row), and it has
@@ -16,6 +24,10 @@ struct Body {
     std::string name;
     bool is_point = false;
     bool is_rotor = false;   ///< a point mass that stands for inertias along coordinates, see WithRotors
+    /// Of a point mass that holds states of controllers (controllers.h): the speed of one of its size, m/s.
+    /// 0: it is none.
+    double state_speed = 0;
+    std::vector<HeldState> states{};   ///< three at most
     Matrix4 mass{};          ///< m (P7)
     Matrix34 X{};            ///< configuration at the start
     Matrix34 V{};            ///< dX/dt at the start
@@ -23,6 +35,10 @@ struct Body {
     /// skew (P4). X, m and all places on the body are in the orthonormal triad.
     Matrix3 stretch = identity<3>();
     double volume = 0;   ///< m^3; 0: nobody said
+
+    bool holds_states() const { return state_speed > 0; }
+    /// It has weight, energy and a place; else it stands for something that has none.
+    bool is_matter() const { return !is_rotor && !holds_states(); }
 };
 
 /// What a state is usually given by; all in world axes.

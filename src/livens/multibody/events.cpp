@@ -41,6 +41,29 @@ void check_event(const Event& event, const std::vector<Joint>& joints, const std
         refuse("event-action", "an event begins or ends one joint or load that says so");
 }
 
+std::vector<double> Sampling::instants() const
+{
+    std::vector<double> all;
+    // Products, not sums: instants do not gather rounding.
+    for (int k = 0; first + k * every <= last; ++k) all.push_back(first + k * every);
+    return all;
+}
+
+void change_states(const Load& load, const StateChange& change, Instant at, std::span<const Matrix34> X,
+                   std::span<const double> angles, std::vector<Matrix34>& V)
+{
+    const LoadArguments arguments = load_arguments(load, at, X, V, angles);
+    std::vector<double> wanted;
+    for (const LoadReading& reading : load.readings) wanted.push_back(reading.value(arguments));
+    for (std::size_t k = 0; k < change.states.size(); ++k) {
+        const PairForm& form = change.states[k].forms[0];
+        const Vector3 along = form.b_j.column(0);   // of a displacement: its gradient
+        Matrix34& of_body = V[static_cast<std::size_t>(form.body_j)];
+        const double by = wanted[k] - coordinate_rate(change.states[k], X, V);
+        for (int i = 0; i < 3; ++i) of_body(i, 0) += by / dot(along, along) * along[i];
+    }
+}
+
 bool holds(const Event& event, std::span<const double> terms)
 {
     return std::ranges::any_of(event.terms.when, [&](const std::vector<int>& all) {

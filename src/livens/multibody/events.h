@@ -17,7 +17,8 @@ struct EventAction {
         note,         ///< it is told
         end_motion,   ///< the motion ends there
         begin,        ///< a joint or load acts from there on
-        end           ///< it acts until there
+        end,          ///< it acts until there
+        set           ///< states become others
     } does = Does::note;
     int joint = -1, load = -1;   ///< of `begin` and `end`: one of them
 };
@@ -42,6 +43,30 @@ struct EventTerms {
     std::vector<std::vector<int>> when{};
 };
 
+/// What states become at an instant: what a load that does nothing says of itself there.
+struct StateChange {
+    int load = -1;   ///< one reading for each state
+    /// Whose rates the states are.
+    std::vector<JointCoordinate> states{};
+};
+
+/// A controller that is asked at instants first, first + every, .. up to `last`, and holds what it says until
+/// the next one.
+struct Sampling {
+    std::string name;
+    StateChange change;
+    double every = 0;   ///< s
+    double first = 0;   ///< s
+    double last = 0;    ///< s
+
+    /// Ascending.
+    std::vector<double> instants() const;
+};
+
+/// The states of bodies behind a change. `angles`: of loads, see Turns.
+void change_states(const Load& load, const StateChange& change, Instant at, std::span<const Matrix34> X,
+                   std::span<const double> angles, std::vector<Matrix34>& V);
+
 /// A condition that comes true as the motion has it, and an action. An element of the motion ends there; the
 /// instant is that at which the state at the element's end is on the border (docs/theory.md, "Events").
 struct Event {
@@ -49,6 +74,7 @@ struct Event {
     std::string text;   ///< of the condition, for people
     EventTerms terms;
     EventAction action;
+    StateChange change{};   ///< of `set`
 };
 
 /// Throws InputError: `event-condition` for none, or a joint that is not there, `event-action` for what

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "livens/base/error.h"
+#include "livens/multibody/controllers.h"
 #include "livens/multibody/directors.h"
 #include "livens/multibody/wording.h"
 #include "livens/solvers/spectral.h"
@@ -354,10 +355,26 @@ int Model::add_event(Event event)
 {
     check_name(events_, event.name, "event");
     check_event(event, joints_, loads_);
+    if (event.action.does == EventAction::Does::set)
+        check_change(event.change, bodies_, loads_, "event[" + event.name + "]");
     has_.events = true;
     events_.push_back(std::move(event));
     changed();
     return static_cast<int>(events_.size()) - 1;
+}
+
+int Model::add_sampling(Sampling sampling)
+{
+    check_name(samplings_, sampling.name, "controller");
+    const std::string path = "controller[" + sampling.name + "]";
+    if (!(sampling.every > 0) || !std::isfinite(sampling.every) || !std::isfinite(sampling.first) ||
+        !std::isfinite(sampling.last))
+        refuse("controller-every", path + ".every", "the period of a sampled controller must be positive");
+    check_change(sampling.change, bodies_, loads_, path);
+    has_.events = true;
+    samplings_.push_back(std::move(sampling));
+    changed();
+    return static_cast<int>(samplings_.size()) - 1;
 }
 
 int Model::find_body(const std::string& name) const
@@ -379,9 +396,15 @@ State Model::start() const
     return state;
 }
 
+bool acts_on_states(const Model& model, const Load& load)
+{
+    const int body = load.bodies[0] == world ? load.bodies[1] : load.bodies[0];
+    return body != world && model.bodies()[static_cast<std::size_t>(body)].holds_states();
+}
+
 Matrix34 weight(const Body& body, const Vector3& gravity)
 {
-    return body.is_rotor ? Matrix34{} : outer(gravity, body.mass.column(0));
+    return !body.is_matter() ? Matrix34{} : outer(gravity, body.mass.column(0));
 }
 
 }   // namespace livens

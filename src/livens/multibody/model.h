@@ -24,6 +24,8 @@ struct State {
     std::vector<Matrix34> X;
     std::vector<Matrix34> V;
     std::vector<double> angles{};   ///< of loads, see Turns; empty: no turns since the bodies were stated
+    /// Of a motion: controllers that are asked at t were asked.
+    bool is_of_motion = false;
 };
 
 /// A place of a body, or of the world, by its name.
@@ -79,6 +81,8 @@ public:
     int add_point(NamedPoint point);
     /// Also throws for an action on what is not there, or is not stated to be decided by events.
     int add_event(Event event);
+    /// Also throws for a period that is not positive, and states that no body holds.
+    int add_sampling(Sampling sampling);
 
     const Vector3& gravity() const { return gravity_; }   ///< m/s^2
     const std::vector<Body>& bodies() const { return bodies_; }
@@ -87,6 +91,7 @@ public:
     const std::vector<Sensor>& sensors() const { return sensors_; }
     const std::vector<NamedPoint>& points() const { return points_; }
     const std::vector<Event>& events() const { return events_; }
+    const std::vector<Sampling>& samplings() const { return samplings_; }
 
     /// Brings in all of another model, displaced, with a prefix before its names. What it says of the world's
     /// axes and places turns and moves along: points and axes there, forces in world axes, paths of drives,
@@ -121,8 +126,8 @@ public:
     bool has_drives() const { return has_.drives; }
     /// Whether the law of a load or row bends or jumps where the motion decides; see Load::guards.
     bool has_pieces() const { return has_.pieces; }
-    /// Whether joints act for a part of the time, or the motion decides something; these are what solve()
-    /// divides time by, see acting_at().
+    /// Whether joints act for a part of the time, controllers are asked at instants, or the motion decides
+    /// something; these are what solve() divides time by, see acting_at().
     bool has_events() const { return has_.events; }
     /// Whether coordinates of joints have inertias, see rotors.h.
     bool has_rotors() const { return has_.rotors; }
@@ -153,6 +158,7 @@ private:
     std::vector<Sensor> sensors_;
     std::vector<NamedPoint> points_;
     std::vector<Event> events_;
+    std::vector<Sampling> samplings_;
     std::vector<RowPlace> rows_;
     std::vector<int> first_rows_;
     ModelParts has_;
@@ -177,7 +183,10 @@ struct ActingModel {
 };
 ActingModel acting_at(const Model& model, double t);
 
-/// Weight of a body: F = g (m e_0)^T.
+/// Whether it does no more than change states of controllers.
+bool acts_on_states(const Model& model, const Load& load);
+
+/// Weight of a body: F = g (m e_0)^T; of what is no matter none.
 Matrix34 weight(const Body& body, const Vector3& gravity);
 
 }   // namespace gnu::visibility("default")]]livens

@@ -24,9 +24,9 @@ double length_of(const Model& model)
     double length = 0, radius = 0;   // of gyration, the largest
     Vector3 middle{};
     const std::vector<Body>& bodies = model.bodies();
-    const auto n = std::ranges::count(bodies, false, &Body::is_rotor);
+    const auto n = std::ranges::count(bodies, true, &Body::is_matter);
     for (const Body& body : bodies) {
-        if (body.is_rotor) continue;
+        if (!body.is_matter()) continue;
         double square = 0;
         for (int i = 1; i < 4; ++i) {
             const double offset = body.mass(i, 0) / body.mass(0, 0);
@@ -38,7 +38,7 @@ double length_of(const Model& model)
         middle += (1.0 / static_cast<double>(n)) * center_of_mass(body);
     }
     for (const Body& body : bodies)
-        if (!body.is_rotor) length = std::max(length, 2 * told_distance(center_of_mass(body), middle));
+        if (body.is_matter()) length = std::max(length, 2 * told_distance(center_of_mass(body), middle));
     const auto of_rope = [&](const std::vector<BodyPoint>& over) {
         const auto place = [&](const BodyPoint& at) {
             return (at.body == world ? world_configuration : bodies[at.body].X) * point(at.point);

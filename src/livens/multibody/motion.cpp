@@ -144,6 +144,7 @@ State Motion::at(double t) const
     X.evaluate(element, s, 0, x);
     X.evaluate(element, s, 1, rates);
     State state;
+    state.is_of_motion = true;
     state.t = t;
     state.X.reserve(static_cast<std::size_t>(n_bodies));
     state.V.reserve(static_cast<std::size_t>(n_bodies));
@@ -166,6 +167,7 @@ State Motion::at_end(int end, Side side) const
     assert(end >= 0 && end <= n_elements());
     assert(static_cast<int>(velocities.size()) == (n_elements() + 1) * n_bodies);
     State state;
+    state.is_of_motion = true;
     state.t = mesh.ends[end];
     state.X.reserve(static_cast<std::size_t>(n_bodies));
     state.V.reserve(static_cast<std::size_t>(n_bodies));

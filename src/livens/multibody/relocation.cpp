@@ -39,6 +39,12 @@ void relocate(JointCoordinate& coordinate, const Relocation& to)
     for (PairForm& form : coordinate.forms) relocate(form, to);
 }
 
+void relocate(StateChange& change, const Relocation& to)
+{
+    if (change.load >= 0) change.load += to.first_load;
+    for (JointCoordinate& state : change.states) relocate(state, to);
+}
+
 void relocate(ConstraintRow& row, const Relocation& to)
 {
     for (Drive& drive : row.drives) drive.form = displaced(drive.form, to.by);
@@ -182,6 +188,10 @@ void displace(Load& load, const Displacement& by)
 Body relocated(Body body, const Relocation& to)
 {
     body.name = to.name(body.name);
+    for (HeldState& state : body.states) {
+        state.name = to.name(state.name);
+        state.along = to.by.rotation * state.along;
+    }
     body.X = to.by.of_configuration(body.X);
     body.V = to.by.rotation * body.V;
     return body;
@@ -249,7 +259,21 @@ Event relocated(Event event, const Relocation& to, const std::function<int(int)>
     }
     if (event.action.joint >= 0) event.action.joint = joint(event.action.joint);
     if (event.action.load >= 0) event.action.load += to.first_load;
+    relocate(event.change, to);
     return event;
+}
+
+Sampling relocated(Sampling sampling, const Relocation& to)
+{
+    sampling.name = to.name(sampling.name);
+    relocate(sampling.change, to);
+    return sampling;
+}
+
+JointCoordinate relocated(JointCoordinate coordinate, const Relocation& to)
+{
+    relocate(coordinate, to);
+    return coordinate;
 }
 
 }   // namespace livens

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 
 #include "livens/multibody/displacement.h"
@@ -17,9 +18,15 @@ struct Relocation {
     std::string prefix;
     Displacement by{};
     int first_body = 0, first_load = 0;
+    /// Where bodies of the part that came later than others of the model are: its number n_early and on.
+    int n_early = std::numeric_limits<int>::max(), first_late = 0;
 
     std::string name(const std::string& own) const { return prefix + own; }
-    int body(int own) const { return own == world ? world : own + first_body; }
+    int body(int own) const
+    {
+        if (own == world) return world;
+        return own < n_early ? own + first_body : own - n_early + first_late;
+    }
 };
 
 /// A part as it is in the other model.  (Model::add)
@@ -31,5 +38,7 @@ Sensor relocated(Sensor sensor, const Relocation& to);
 /// `joint`: where a joint of the part is in the model. Throws InputError `event-reaction` for components of
 /// reactions where axes turn.
 Event relocated(Event event, const Relocation& to, const std::function<int(int)>& joint);
+Sampling relocated(Sampling sampling, const Relocation& to);
+JointCoordinate relocated(JointCoordinate coordinate, const Relocation& to);
 
 }   // namespace gnu::visibility("default")]]livens

@@ -196,6 +196,7 @@ WithRotors::WithRotors(const Model& model)
     for (const Load& load : model.loads()) whole_.add_load(load);
     for (const Sensor& sensor : model.sensors()) whole_.add_sensor(sensor);
     for (const Event& event : model.events()) whole_.add_event(event);
+    for (const Sampling& sampling : model.samplings()) whole_.add_sampling(sampling);
 }
 
 State WithRotors::with(const State& state) const

@@ -75,7 +75,7 @@ Sensor load_sensor(const std::string& name, int index, const Load& load)
     Sensor sensor{name, "load", {}, index};
     for (const LoadReading& reading : load.readings)
         sensor.components.push_back({reading.name, reading.unit});
-    sensor.components.push_back({"power", "W"});
+    if (load.type != controller_type || load.readings.empty()) sensor.components.push_back({"power", "W"});
     return sensor;
 }
 

@@ -27,7 +27,7 @@ struct SensorComponent {
 /// body's energy that of motion and that of height.
 struct Sensor {
     std::string name;
-    std::string type;   ///< "point", "joint", "relative", "load", "energy"
+    std::string type;   ///< "point", "joint", "relative", "load", "energy", "controller"
     std::vector<SensorComponent> components;
     int load = -1;   ///< which one is read, or -1
     int body = -1;   ///< whose energy is read, or -1

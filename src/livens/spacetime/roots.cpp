@@ -37,7 +37,7 @@ std::vector<StateQuantity> turning_rates(const Model& model)
             if (q.coordinate.counts_turns()) all.push_back({joint.name + "." + q.name + "_rate", "", q, 1});
     if (!all.empty()) return all;
     for (const Body& body : model.bodies()) {
-        if (body.is_rotor) continue;
+        if (!body.is_matter()) continue;
         for (const char* of : {".velocity", ".angular_velocity"}) {
             if (body.is_point && of[1] == 'a') continue;
             const std::vector<StateQuantity> three = state_quantities(model, body.name + of);

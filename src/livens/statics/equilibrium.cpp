@@ -18,179 +18,16 @@
 #include "livens/multibody/joint_coordinates.h"
 #include "livens/solvers/factors.h"
 #include "livens/solvers/spectral.h"
-#include "livens/statics/statics.h"
+#include "livens/statics/rest_search.h"
+#include "livens/statics/rest_with_states.h"
 
 namespace livens {
 
 namespace {
 
-using Values = std::vector<double>;
-
 constexpr double balance_tolerance = 1e-10;   // residual from which on only Newton's steps polish
-constexpr double largest_step = 0.5;          // lengths of the model, rad
 constexpr double smallest_step = 1e-13;
 constexpr int most_unrestored = 25;   // steps in a row that nothing opposes
-
-/// One configuration at rest. Of those that are searched from also the principal stiffnesses.
-struct RestPoint {
-    std::vector<Matrix34> X;
-    std::vector<double> maps;
-    std::unique_ptr<const Statics> statics;
-    DenseMatrix directions;   // scaled twists by the coordinates of principal stiffness
-    Values stiffness;         // principal ones, ascending
-    DenseMatrix skew;         // of the tangent, in these coordinates; empty where it has none
-    Values forces;            // along them
-    double scale = 0;         // Statics::largest_stiffness
-
-    double residual() const { return statics->residual; }
-};
-
-class Search {
-public:
-    Search(const Model& model, const ConsistentStart& closed)
-        : model_(model), tables_(model, closed.independent), instant_(tables_), rows_(all_rows(model)),
-          t_(closed.start.t)
-    {
-        state_.resize(tables_);
-        state_.angles = tables_.loads.turns.begin(closed.start);
-        const std::vector<Matrix34> stated = model.start().X;
-        for (const Joint& joint : model.joints())
-            for (const NamedCoordinate& q : joint.coordinates) {
-                const double value = coordinate_value(q.coordinate, stated);
-                counted_.push_back({&q, value, value});
-            }
-    }
-
-    const ModelTables& tables() const { return tables_; }
-
-    /// Forces in this configuration; false if they are no numbers or a free motion has no inertia.
-    bool look(std::vector<Matrix34> X, RestPoint& point)
-    {
-        point.X = std::move(X);
-        state_.t = t_;
-        std::copy_n(point.X.data()->data(), state_.X.size(), state_.X.begin());
-        std::fill(state_.velocity.begin(), state_.velocity.end(), 0.0);
-        tables_.loads.turns.follow(point.X, state_.angles);
-        follow_joints(point.X);
-        if (!instant_.prepare(state_, tables_.independent)) return false;
-        instant_.accelerate(state_, Side::right);
-        acceleration_ = state_.acceleration[1];
-        instant_.add_basis(state_);
-        point.maps = state_.maps;
-        point.statics = std::make_unique<const Statics>(tables_, state_, Side::right);
-        return std::isfinite(point.residual());
-    }
-
-    /// Coordinates of each joint where it looked last, with the turns on the way there.
-    std::vector<std::vector<double>> coordinates() const
-    {
-        std::vector<std::vector<double>> all(model_.joints().size());
-        auto next = counted_.begin();
-        for (std::size_t j = 0; j < all.size(); ++j)
-            for (const NamedCoordinate& q : model_.joints()[j].coordinates)
-                all[j].push_back(q.at_stated + next->value - next->stated), ++next;
-        return all;
-    }
-
-    /// Principal stiffnesses, at the configuration that was looked at last.
-    void add_stiffness(RestPoint& point) const
-    {
-        const Statics& statics = *point.statics;
-        if (statics.free.n == 0) return;
-        const DenseMatrix K = statics.free.reduced(tables_, statics.stiffness);
-        const SymmetricSpectrum principal = symmetric_spectrum(symmetric_part(K));
-        point.scale = statics.largest_stiffness;
-        point.stiffness = principal.values;
-        point.directions = product(statics.free.Z, principal.vectors);
-        point.forces = transposed_product(point.directions, statics.rows);
-        const DenseMatrix skew = skew_part(K);
-        point.skew = {};
-        if (largest_size(skew.a) > 1e-13 * point.scale)
-            point.skew = product(transposed_product(principal.vectors, skew), principal.vectors);
-    }
-
-    /// Largest displacement of a body, in lengths of the model, or turn.
-    double size_of(const RestPoint& point, const Values& step) const
-    {
-        const Values y = product(point.directions, step);
-        Values xi(static_cast<std::size_t>(tables_.n_twists));
-        tables_.bodies.to_twist(point.maps.data(), y.data(), xi.data());
-        return largest_displacement(tables_, xi.data());
-    }
-
-    /// Where a step leads to, joints closed. False if they do not close.
-    bool move(const RestPoint& from, const Values& step, std::vector<Matrix34>& X) const
-    {
-        const Values y = product(from.directions, step);
-        Values xi(static_cast<std::size_t>(tables_.n_twists));
-        tables_.bodies.to_twist(from.maps.data(), y.data(), xi.data());
-        X = from.X;
-        for (int b = 0; b < tables_.n_bodies(); ++b) {
-            const double* v = xi.data() + tables_.bodies[b].first;
-            const Vector3 shift{v[0], v[1], v[2]};
-            if (tables_.bodies[b].dofs == 3) {
-                X[b].set_column(0, X[b].column(0) + shift);
-                continue;
-            }
-            X[b] = twist::moved(X[b], shift, {v[3], v[4], v[5]});
-            const Matrix3 D = directors(X[b]);   // rounding does not gather
-            X[b] = configuration(X[b].column(0), 0.5 * (D * (3.0 * identity<3>() - transpose(D) * D)));
-        }
-        Closing closing = close_rows(model_, X, rows_, false);
-        X = std::move(closing.X);
-        return closing.closed;
-    }
-
-    /// Work of weight and loads on the straight way between two configurations, by the trapezoidal rule:
-    /// exact for weight and for forces that are constant or linear in X. What is small is the difference of
-    /// large numbers there, and taken from what joints leave free.
-    double work(const RestPoint& from, const RestPoint& to, const Values& step, double size) const
-    {
-        if (size < 1e-3) {
-            Values both = from.statics->rows;
-            add_scaled(both, 1, to.statics->rows);
-            return 0.5 * dot(product(from.directions, step), both);
-        }
-        double sum = 0;
-        for (std::size_t b = 0; b < from.X.size(); ++b)
-            for (int i = 0; i < 12; ++i)
-                sum += 0.5 * (from.statics->given[12 * b + i] + to.statics->given[12 * b + i]) *
-                       (to.X[b].a[i] - from.X[b].a[i]);
-        return sum;
-    }
-
-    /// The state that was looked at last.
-    const InstantState& state() const { return state_; }
-    const std::vector<double>& acceleration() const { return acceleration_; }
-    int bad_load(const std::vector<Matrix34>& X) const
-    {
-        const std::vector<double> V(12 * X.size(), 0.0);
-        return tables_.loads.bad({t_, Side::right}, X.data()->data(), V.data(), state_.angles);
-    }
-
-private:
-    struct Counted {
-        const NamedCoordinate* q;
-        double stated, value;
-    };
-    /// Each angle the shorter way.
-    void follow_joints(std::span<const Matrix34> X)
-    {
-        for (Counted& one : counted_) {
-            const double x = coordinate_value(one.q->coordinate, X);
-            one.value = one.q->coordinate.counts_turns() ? turned_to(x, one.value) : x;
-        }
-    }
-
-    const Model& model_;
-    ModelTables tables_;
-    InstantSystem instant_;
-    InstantState state_;
-    std::vector<int> rows_;
-    std::vector<double> acceleration_;
-    std::vector<Counted> counted_;   // of all joints
-    double t_;
-};
 
 /// Coordinates that nothing restores, and in which nothing pulls: they stay.
 bool is_idle(const RestPoint& point, std::size_t i)
@@ -223,7 +60,7 @@ Values damped_step(const RestPoint& point, double mu)
 
 /// The step with the least mu that is not longer than the radius. A shorter one goes on to the radius in the
 /// coordinates of negative stiffness: the way out of an unstable equilibrium is long.
-Values step_within(const Search& search, const RestPoint& point, double radius)
+Values step_within(const RestSearch& search, const RestPoint& point, double radius)
 {
     Values step = damped_step(point, 0);
     const double whole = search.size_of(point, step);
@@ -266,10 +103,8 @@ bool is_unrestored(const RestPoint& point)
     return unrestored > 0.25 * squared_norm(point.forces);
 }
 
-enum class Outcome { balanced, no_numbers, unrestored, stuck, limit, cancelled };
-
 /// Down the work of the forces to where they are balanced.
-Outcome descend(Search& search, const EquilibriumOptions& options, RestPoint& here, int& iterations)
+Outcome descend(RestSearch& search, const EquilibriumOptions& options, RestPoint& here, int& iterations)
 {
     double radius = largest_step;
     int n_unrestored = 0;
@@ -304,7 +139,7 @@ Outcome descend(Search& search, const EquilibriumOptions& options, RestPoint& he
 }
 
 /// Newton's steps, whatever the signs of the stiffness, as long as they halve the residual.
-void polish(Search& search, RestPoint& here, int& iterations)
+void polish(RestSearch& search, RestPoint& here, int& iterations)
 {
     for (int i = 0; i < 10 && here.residual() > 0; ++i) {
         const Values step = damped_step(here, -1);
@@ -319,7 +154,7 @@ void polish(Search& search, RestPoint& here, int& iterations)
     }
 }
 
-std::string why_not(const Model& model, const Search& search, const RestPoint& here, Outcome outcome,
+std::string why_not(const Model& model, const RestSearch& search, const RestPoint& here, Outcome outcome,
                     const Equilibrium& result)
 {
     if (outcome == Outcome::cancelled) return "cancelled";
@@ -343,7 +178,7 @@ std::string why_not(const Model& model, const Search& search, const RestPoint& h
     }
 }
 
-void describe_worst(const Search& search, const RestPoint& here, Equilibrium& result)
+void describe_worst(const RestSearch& search, const RestPoint& here, Equilibrium& result)
 {
     result.residual = here.residual();
     result.worst_body = here.statics->body;
@@ -358,9 +193,11 @@ void describe_worst(const Search& search, const RestPoint& here, Equilibrium& re
 
 Equilibrium find_equilibrium(const Model& the_model, const State& start, const EquilibriumOptions& options)
 {
+    refuse_sampling(the_model);
     const Model model = frozen(the_model, {start.t});
     State at_rest = start;
-    for (Matrix34& V : at_rest.V) V = {};
+    for (std::size_t b = 0; b < at_rest.V.size(); ++b)
+        if (!model.bodies()[b].holds_states()) at_rest.V[b] = {};
     const ConsistentStart closed = consistent_start(model, at_rest, options.initial);
 
     Equilibrium result;
@@ -371,13 +208,18 @@ Equilibrium find_equilibrium(const Model& the_model, const State& start, const E
         result.is_found = true;
         return result;
     }
-    Search search(model, closed);
+    RestSearch search(model, closed);
     RestPoint here;
+    const bool has_states = std::ranges::any_of(model.bodies(), &Body::holds_states);
+    if (has_states) here.held = search.held_at(closed.start);
     Outcome outcome = Outcome::no_numbers;
-    if (search.look(closed.start.X, here)) outcome = descend(search, options, here, result.iterations);
+    if (search.look(closed.start.X, here))
+        outcome = has_states ? rest_with_states(search, options, here, result.iterations)
+                             : descend(search, options, here, result.iterations);
+    if (has_states) result.state.V = search.velocities_of(here.held);
     if (outcome == Outcome::stuck && here.residual() <= equilibrium_tolerance) outcome = Outcome::balanced;
-    if (outcome == Outcome::balanced) polish(search, here, result.iterations);
-    if (outcome != Outcome::no_numbers) search.look(std::vector<Matrix34>(here.X), here);
+    if (outcome == Outcome::balanced && !has_states) polish(search, here, result.iterations);
+    if (outcome != Outcome::no_numbers) search.look(std::vector<Matrix34>(here.X), here);   // once more
     describe_worst(search, here, result);
     result.state.X = here.X;
     result.state.angles = search.state().angles;

@@ -21,7 +21,7 @@ struct EquilibriumOptions {
 struct Equilibrium {
     bool is_found = false;
     std::string message;   ///< where it was not found: why, and which body still accelerates
-    State state;           ///< V = 0; found or not, the last one
+    State state;           ///< V = 0, but of what holds states; found or not, the last one
     int degrees_of_freedom = 0;
     int iterations = 0;    ///< steps, those that were taken back included
     double residual = 0;   ///< largest unbalanced force on a body over the largest forces on one, in the mass

@@ -55,7 +55,7 @@ public:
             // radau takes").
             one.decay = dot(y, times(dampers, y));
             for (int b = 0; b < tables_.n_bodies(); ++b) {
-                if (tables_.model->bodies()[static_cast<std::size_t>(b)].is_rotor) continue;
+                if (!tables_.model->bodies()[static_cast<std::size_t>(b)].is_matter()) continue;
                 const auto twist = part(y, b);
                 Matrix34 moved{};
                 for (int k = 0; k < tables_.bodies[b].dofs; ++k)

@@ -11,6 +11,7 @@
 #include "livens/base/text.h"
 #include "livens/dynamics/instant/impact.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/controllers.h"
 #include "livens/multibody/rotors.h"
 #include "livens/solvers/factors.h"
 #include "livens/solvers/spectral.h"
@@ -47,6 +48,7 @@ void refuse_stops(const Model& model, const State& state)
 void refuse_motion(const Model& model, const State& state)
 {
     for (int b = 0; b < model.n_bodies(); ++b) {
+        if (model.bodies()[b].holds_states()) continue;
         const Matrix34 &X = state.X[b], &V = state.V[b];
         const double speed = norm(V.column(0));
         const double spin = model.bodies()[b].is_point ? 0 : norm(angular_velocity(X, V));
@@ -104,16 +106,61 @@ void add_rotors(const Model& model, std::span<const Matrix34> X, const DenseMatr
     }
 }
 
+/// An orthonormal basis of the free coordinates without those that move a state's body alone.
+DenseMatrix without_states(const StateDirections& states, int n)
+{
+    DenseMatrix P(n, n);
+    for (int i = 0; i < n; ++i) P(i, i) = 1;
+    for (const DenseMatrix* E : {&states.held, &states.idle})
+        for (int k = 0; k < E->cols; ++k)
+            for (int j = 0; j < n; ++j)
+                for (int i = 0; i < n; ++i) P(i, j) -= (*E)(i, k) * (*E)(j, k);
+    const SymmetricSpectrum spectrum = symmetric_spectrum(P);   // of a projection: zeros and ones
+    DenseMatrix Q(n, n - states.held.cols - states.idle.cols);
+    for (int k = 0; k < Q.cols; ++k)
+        std::ranges::copy(spectrum.vectors.column(n - Q.cols + k), Q.column(k).begin());
+    return Q;
+}
+
+/// Z^T A Z with other bases on either side.
+DenseMatrix between(const DenseMatrix& left, const DenseMatrix& A, const DenseMatrix& right)
+{
+    return transposed_product(left, product(A, right));
+}
+
+/// What states do, and what is done to them, in the basis without them.
+LinearStates states_of(const Model& model, const State& state, const StateDirections& directions,
+                       const DenseMatrix& Q, const DenseMatrix& C, const DenseMatrix& K)
+{
+    LinearStates states;
+    for (std::size_t b = 0; b < model.bodies().size(); ++b) {
+        const Body& body = model.bodies()[b];
+        for (std::size_t k = 0; k < body.states.size(); ++k) {
+            states.names.push_back(body.states[k].name);
+            states.scale.push_back(std::sqrt(body.mass(0, 0)) * body.states[k].unit);
+        }
+    }
+    for (const NamedState& one : states_in(model, state.V)) states.values.push_back(one.value);
+    const DenseMatrix& E = directions.held;
+    states.by_states = by_rows(between(Q, C, E));
+    states.by_q = by_rows(between(E, K, Q));
+    states.by_rates = by_rows(between(E, C, Q));
+    states.own = by_rows(between(E, C, E));
+    return states;
+}
+
 }   // namespace
 
 Linearisation linearise(const Model& the_model, const State& state, Side side)
 {
     refuse_motion(the_model, consistent_start(the_model, state, StartPolicy::project).start);
     refuse_stops(the_model, state);
+    refuse_sampling(the_model);
     // Drives are held where they are at the instant: the equations of a rest have no time.
     const Model model = frozen(the_model, {state.t, side});
     State rest = state;
-    for (Matrix34& V : rest.V) V = {};
+    for (std::size_t b = 0; b < rest.V.size(); ++b)
+        if (!model.bodies()[b].holds_states()) rest.V[b] = {};
     const PreparedState at(model, rest, side, true);
     Linearisation linear;
     linear.state = rest;
@@ -127,15 +174,22 @@ Linearisation linearise(const Model& the_model, const State& state, Side side)
     TwistTerms mass;
     SmallMotions(at.tables, at.state, side).add_mass(mass);
     const FreeMotions& free = statics.free;
-    linear.n = free.n;
-    const DenseMatrix C = free.reduced(at.tables, statics.damping),
-                      K = free.reduced(at.tables, statics.stiffness);
-    DenseMatrix M = free.reduced(at.tables, mass);
-    add_rotors(model, linear.state.X, twists_of(at.tables, at.state, free), M);
+    DenseMatrix C = free.reduced(at.tables, statics.damping),
+                K = free.reduced(at.tables, statics.stiffness), M = free.reduced(at.tables, mass),
+                twists = twists_of(at.tables, at.state, free);
+    add_rotors(model, linear.state.X, twists, M);
+    const StateDirections directions(at.tables, free);
+    if (!directions.is_empty()) {
+        const DenseMatrix Q = without_states(directions, free.n);
+        linear.states = states_of(model, rest, directions, Q, C, K);
+        for (DenseMatrix* A : {&C, &K, &M}) *A = between(Q, *A, Q);
+        twists = product(twists, Q);
+    }
+    linear.n = K.rows;
     linear.M = by_rows(symmetric_part(M));
     linear.C = by_rows(C);
     linear.K = by_rows(K);
-    linear.twists = by_rows(twists_of(at.tables, at.state, free));
+    linear.twists = by_rows(twists);
     // What counts as zero: entries of K are sums of terms that may cancel (theory.md, "Small motions").
     linear.rounding = rounding_of_terms * statics.largest_stiffness;
     linear.damping_rounding = rounding_of_terms * statics.largest_damping;
@@ -144,6 +198,7 @@ Linearisation linearise(const Model& the_model, const State& state, Side side)
     linear.is_conservative = is_symmetric(K, linear.rounding) && is_symmetric(C, linear.damping_rounding);
     if (linear.n > 0 && linear.is_conservative)
         linear.is_conservative = symmetric_values(symmetric_part(C))[0] >= -linear.damping_rounding;
+    linear.is_conservative = linear.is_conservative && linear.states.n() == 0;
     return linear;
 }
 
@@ -204,11 +259,15 @@ Values row_of(const Model& model, const Linearisation& linear, const std::string
 struct Port {
     Values row;
     bool is_rate = false;
+    int state = -1;   ///< instead
 };
 
 Port port(const Model& model, const Linearisation& linear, const std::string& name)
 {
     static const std::string rate = "_rate";
+    const auto state = std::ranges::find(linear.states.names, name);
+    if (state != linear.states.names.end())
+        return {{}, false, static_cast<int>(state - linear.states.names.begin())};
     const std::size_t dot = name.rfind('.');
     if (dot == std::string::npos) refuse_port(name, "names no quantity of a joint or a body");
     std::string what = name.substr(dot + 1);
@@ -235,14 +294,40 @@ std::complex<double> amplitude(const Linearisation& linear, const VibrationMode&
     return {coordinate_rate(coordinate, linear.state.X, re), coordinate_rate(coordinate, linear.state.X, im)};
 }
 
+namespace {
+
+/// What states do to accelerations, and their rates: the last rows and columns of A. L: of M.
+void add_states(const Linearisation& linear, const DenseMatrix& L, DenseMatrix& A)
+{
+    const LinearStates& z = linear.states;
+    const int n = linear.n, n_z = z.n();
+    for (int k = 0; k < n_z; ++k) {
+        const auto of = static_cast<std::size_t>(k);
+        Values pulls(static_cast<std::size_t>(n));
+        for (int i = 0; i < n; ++i) pulls[static_cast<std::size_t>(i)] = -z.by_states[of + static_cast<std::size_t>(i * n_z)] * z.scale[of];
+        if (n > 0) std::ranges::copy(cholesky_solution(L, pulls), A.column(2 * n + k).begin() + n);
+        for (int j = 0; j < n; ++j) {
+            A(2 * n + k, j) = -z.by_q[static_cast<std::size_t>(k * n + j)] / z.scale[of];
+            A(2 * n + k, n + j) = -z.by_rates[static_cast<std::size_t>(k * n + j)] / z.scale[of];
+        }
+        for (int j = 0; j < n_z; ++j)
+            A(2 * n + k, 2 * n + j) = -z.own[static_cast<std::size_t>(k * n_z + j)] *
+                                      z.scale[static_cast<std::size_t>(j)] / z.scale[of];
+    }
+}
+
+}   // namespace
+
 StateMatrices state_matrices(const Model& model, const Linearisation& linear,
                              const std::vector<std::string>& inputs, const std::vector<std::string>& outputs)
 {
     const int n = linear.n, m = static_cast<int>(inputs.size()), p = static_cast<int>(outputs.size());
+    const int n_z = linear.states.n(), size = 2 * n + n_z;
     const auto square = [n](const Values& by_rows) { return transpose({n, n, by_rows.data()}); };
     const DenseMatrix L = cholesky(square(linear.M)), K = cholesky_solution(L, square(linear.K)),
                       damping = cholesky_solution(L, square(linear.C));
-    DenseMatrix A(2 * n, 2 * n), B(2 * n, m), C(p, 2 * n);
+    DenseMatrix A(size, size), B(size, m), C(p, size);
+    add_states(linear, L, A);
     for (int j = 0; j < n; ++j) {
         // The state is (q, q'), with M q'' = f - K q - C q'.
         A(j, n + j) = 1;
@@ -250,17 +335,19 @@ StateMatrices state_matrices(const Model& model, const Linearisation& linear,
     }
     for (int j = 0; j < m; ++j) {
         const Port input = port(model, linear, inputs[j]);
-        if (input.is_rate) refuse_port(inputs[j], "is a rate, and inputs are forces");
+        if (input.is_rate || input.state >= 0)
+            refuse_port(inputs[j], "is a rate or a state, and inputs are forces");
         // A force u along a coordinate c q has the generalised force c^T u; divided by M it is an
         // acceleration.
         const Values accelerations = cholesky_solution(L, input.row);   // virtual work u c dq
-        std::ranges::copy(accelerations, B.column(j).subspan(n).begin());
+        std::ranges::copy(accelerations, B.column(j).begin() + n);
     }
     for (int i = 0; i < p; ++i) {
         const Port output = port(model, linear, outputs[i]);
-        for (int k = 0; k < n; ++k) C(i, (output.is_rate ? n : 0) + k) = output.row[k];
+        if (output.state >= 0) C(i, 2 * n + output.state) = 1;
+        for (int k = 0; k < n && output.state < 0; ++k) C(i, (output.is_rate ? n : 0) + k) = output.row[k];
     }
-    return {2 * n,
+    return {size,
             inputs,
             outputs,
             by_rows(A),

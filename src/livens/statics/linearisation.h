@@ -12,12 +12,26 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
+/// Of states z of controllers, in units s z of their bodies' velocities, s in `scale`:
+///     M q'' + C q' + K q + by_states s z = forces along q,
+///     s z' + own s z + by_q q + by_rates q' = 0.
+struct LinearStates {
+    std::vector<std::string> names;
+    std::vector<double> values;   ///< at rest
+    std::vector<double> scale;
+    std::vector<double> by_states;        ///< n x n_states, row by row
+    std::vector<double> by_q, by_rates;   ///< n_states x n
+    std::vector<double> own;              ///< n_states x n_states
+
+    int n() const { return static_cast<int>(names.size()); }
+};
+
 /// M q'' + C q' + K q = forces along q, about a state of rest in equilibrium. The n coordinates q are the
 /// amplitudes of small motions that all joints allow, orthonormal in the mass metric (M = 1 unless an inertia
 /// is singular). Loads that depend on time and drives are held at the values they have at that instant. K and
 /// C need not be symmetric: forces that turn with a body make K unsymmetric.
 struct Linearisation {
-    State state;   ///< V = 0
+    State state;   ///< V = 0, but of what holds states
     int n = 0;
     std::vector<double> M, C, K;   ///< n x n, row by row
     /// Of each body the displacement of its reference point (by m) and its rotation vector (world axes) by q:
@@ -26,7 +40,9 @@ struct Linearisation {
     double length = 1;             ///< Model::length()
     double rounding = 0;           ///< of K and its eigenvalues: 1e-12 of the largest terms in K, 1/s^2
     double damping_rounding = 0;   ///< likewise of C, 1/s
-    bool is_conservative = true;   ///< K is symmetric, and C is symmetric without negative eigenvalues
+    /// K is symmetric, and C is symmetric without negative eigenvalues; and there are no states.
+    bool is_conservative = true;
+    LinearStates states{};
 };
 
 /// The largest |F - G^T lambda| of a body, in the mass metric, that a state in equilibrium may have, relative
@@ -81,9 +97,9 @@ struct StabilityReport {
 };
 StabilityReport stability(const Linearisation& linear);
 
-/// x' = A x + B u, y = C x + D u with x = (q, q'), deviations from the state of rest. Matrices row by row.
+/// x' = A x + B u, y = C x + D u with x = (q, q', z), deviations from the state of rest. Matrices row by row.
 struct StateMatrices {
-    int n_states = 0;
+    int n_states = 0;   ///< numbers of x
     std::vector<std::string> inputs, outputs;
     std::vector<double> A, B, C, D;
 };
@@ -91,7 +107,7 @@ struct StateMatrices {
 /// Names of inputs: "JOINT.angle" and "JOINT.displacement", a generalised force along the coordinate (N m or
 /// N), and "BODY.x", "BODY.y", "BODY.z", a force at the body's reference point along a world axis (N). Of
 /// outputs: the same, as the coordinate (rad or m) and the position of the reference point (m), and with
-/// "_rate" behind them their rates. Throws InputError `no-such-port`.
+/// "_rate" behind them their rates; and "CONTROLLER.state". Throws InputError `no-such-port`.
 StateMatrices state_matrices(const Model& model, const Linearisation& linear,
                              const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/base/error.h"
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
 
@@ -190,6 +191,50 @@ std::vector<double> FreeMotions::twists(const ModelTables& tables, const Instant
     std::vector<double> xi(static_cast<std::size_t>(n_twists));
     tables.bodies.to_twist(state.maps.data(), Z.column(k).data(), xi.data());
     return xi;
+}
+
+void refuse_sampling(const Model& model)
+{
+    if (model.samplings().empty()) return;
+    throw InputError({"controller-sampled", "controller[" + model.samplings()[0].name + "]",
+                      "a sampled controller changes at instants: it has no rest and no small motions", "", "",
+                      "", "state it with rates, without 'every', for this question"});
+}
+
+StateDirections::StateDirections(const ModelTables& tables, const FreeMotions& free)
+{
+    struct Direction {
+        int first;   // twist
+        Vector3 along;
+    };
+    std::vector<Direction> of_held, of_idle;
+    for (int b = 0; b < tables.n_bodies(); ++b) {
+        const Body& body = tables.model->bodies()[static_cast<std::size_t>(b)];
+        if (!body.holds_states()) continue;
+        const int first = tables.bodies[b].first;
+        std::vector<Vector3> taken;
+        for (const HeldState& state : body.states) {
+            taken.push_back(state.along);
+            of_held.push_back({first, state.along});
+        }
+        for (int k = 0; k < 3 && taken.size() < 3; ++k) {   // what is left, axis by axis
+            Vector3 e{};
+            e[k] = 1;
+            for (int again = 0; again < 2; ++again)
+                for (const Vector3& one : taken) e -= dot(one, e) * one;
+            if (norm(e) < 0.5) continue;
+            taken.push_back((1 / norm(e)) * e);
+            of_idle.push_back({first, taken.back()});
+        }
+    }
+    for (auto [directions, E] : {std::pair(&of_held, &held), std::pair(&of_idle, &idle)}) {
+        *E = DenseMatrix(free.n, static_cast<int>(directions->size()));
+        for (int k = 0; k < E->cols; ++k) {
+            const Direction& one = (*directions)[static_cast<std::size_t>(k)];
+            for (int j = 0; j < free.n; ++j)
+                for (int i = 0; i < 3; ++i) (*E)(j, k) += one.along[i] * free.Z(one.first + i, j);
+        }
+    }
 }
 
 namespace {

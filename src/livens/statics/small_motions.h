@@ -70,6 +70,18 @@ struct FreeMotions {
     std::vector<double> twists(const ModelTables& tables, const InstantState& state, int k) const;
 };
 
+/// Throws InputError `controller-sampled`: what changes at instants has no rest.
+void refuse_sampling(const Model& model);
+
+/// In the coordinates of free motions those that move a body along a state that it holds, in the order of the
+/// model, and along what it holds nothing by.
+struct StateDirections {
+    DenseMatrix held, idle;   ///< n x .., orthonormal
+
+    StateDirections(const ModelTables& tables, const FreeMotions& free);
+    bool is_empty() const { return held.cols + idle.cols == 0; }
+};
+
 /// A state, closed, with accelerations and multipliers on one side.
 struct PreparedState {
     /// `by_basis`: with a basis of what is free, however much that is.

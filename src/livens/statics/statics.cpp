@@ -43,7 +43,8 @@ void Statics::add_forces(const ModelTables& tables, const InstantState& state, I
 {
     const double* X = state.X.data();
     const std::vector<double>& lambda = state.multipliers[at.side == Side::left ? 0 : 1];
-    const std::vector<double> V(state.X.size(), 0.0);
+    std::vector<double> V(state.X.size());   // of states alone
+    tables.bodies.rates_of(X, state.velocity.data(), V.data());
     given.assign(V.size(), 0.0);
     tables.bodies.add_weight(1.0, given.data());
     const std::vector<double> of_weight = scaled_rows(tables, state, given);
@@ -98,9 +99,10 @@ void Statics::add_levels(const ModelTables& tables, const InstantState& state)
 double largest_displacement(const ModelTables& tables, const double* twists)
 {
     double size = 0;
-    for (const auto& body : tables.bodies)
-        for (int part = 0; part < body.dofs; part += 3) {
-            const double* v = twists + body.first + part;
+    for (int b = 0; b < tables.n_bodies(); ++b)
+        for (int part = 0; part < tables.bodies[b].dofs; part += 3) {
+            if (tables.model->bodies()[static_cast<std::size_t>(b)].holds_states()) continue;
+            const double* v = twists + tables.bodies[b].first + part;
             const double now = norm(Vector3{v[0], v[1], v[2]}) / (part == 0 ? tables.length : 1);
             if (!(now <= size)) size = now;   // nan too
         }

@@ -52,10 +52,28 @@ Roots undamped_roots(const Linearisation& linear)
     return roots;
 }
 
-/// Directions that nothing restores: K q = 0.
+/// Directions that nothing restores: K q = 0; with states (q, s z) in which all is in balance.
 DenseMatrix idle_directions(const Linearisation& linear)
 {
-    return null_directions(square(linear, linear.K), linear.rounding);
+    const LinearStates& z = linear.states;
+    const int n = linear.n, n_z = z.n();
+    if (n_z == 0) return null_directions(square(linear, linear.K), linear.rounding);
+    // Rounding of columns of C is made alike that of K.
+    const double per_rate = linear.damping_rounding > 0 && linear.rounding > 0
+                                ? linear.rounding / linear.damping_rounding
+                                : 1;
+    DenseMatrix all(n + n_z, n + n_z);
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) all(i, j) = linear.K[static_cast<std::size_t>(i * n + j)];
+        for (int j = 0; j < n_z; ++j)
+            all(i, n + j) = per_rate * z.by_states[static_cast<std::size_t>(i * n_z + j)];
+    }
+    for (int i = 0; i < n_z; ++i) {
+        for (int j = 0; j < n; ++j) all(n + i, j) = z.by_q[static_cast<std::size_t>(i * n + j)];
+        for (int j = 0; j < n_z; ++j)
+            all(n + i, n + j) = per_rate * z.own[static_cast<std::size_t>(i * n_z + j)];
+    }
+    return null_directions(all, linear.rounding);
 }
 
 /// Of all else. Roots that are zero are told by K: rounding parts those that come twice.
@@ -67,7 +85,19 @@ Roots general_roots(const Linearisation& linear)
                       C = cholesky_solution(L, square(linear, linear.C));
     const double largest = std::max(std::sqrt(largest_size(K.a)), largest_size(C.a)),
                  unit = largest > 0 ? largest : 1;
-    DenseMatrix A(2 * n, 2 * n);   // on (unit q, q'), whose entries are of one size
+    const LinearStates& z = linear.states;
+    const int n_z = z.n(), size = 2 * n + n_z;
+    DenseMatrix A(size, size);   // on (unit q, q', s z), whose entries are of one size
+    const auto by_states = n > 0 ? cholesky_solution(L, transpose({n_z, n, z.by_states.data()})) : DenseMatrix();
+    for (int k = 0; k < n_z; ++k) {
+        for (int i = 0; i < n; ++i) {
+            A(n + i, 2 * n + k) = -by_states(i, k);
+            A(2 * n + k, i) = -z.by_q[static_cast<std::size_t>(k * n + i)] / unit;
+            A(2 * n + k, n + i) = -z.by_rates[static_cast<std::size_t>(k * n + i)];
+        }
+        for (int j = 0; j < n_z; ++j)
+            A(2 * n + k, 2 * n + j) = -z.own[static_cast<std::size_t>(k * n_z + j)];
+    }
     for (int j = 0; j < n; ++j) {
         // Scaled by the fastest rate, positions and rates are of one size, so the general solver balances
         // well.
@@ -77,8 +107,8 @@ Roots general_roots(const Linearisation& linear)
     const GeneralSpectrum spectrum = general_spectrum(A);
     const DenseMatrix idle = idle_directions(linear);
     Roots roots;
-    for (int k = 0; k < idle.cols; ++k) roots.push_back({{}, {idle.column(k).begin(), idle.column(k).end()}});
-    for (int i = 0; i < 2 * n; ++i) {
+    for (int k = 0; k < idle.cols; ++k) roots.push_back({{}, {idle.column(k).begin(), idle.column(k).begin() + n}});
+    for (int i = 0; i < size; ++i) {
         Complex s = spectrum.values[i];
         // One root of each conjugate pair. Zeros were taken from K, as rounding parts a double zero into a
         // pair.
@@ -129,7 +159,7 @@ Shape moved(const Linearisation& linear, const Shape& q)
 std::vector<VibrationMode> vibration_modes(const Linearisation& linear)
 {
     std::vector<VibrationMode> modes;
-    if (linear.n == 0) return modes;
+    if (linear.n + linear.states.n() == 0) return modes;
     const auto n_bodies = linear.state.X.size();
     for (const Root& root : roots_of(linear)) {
         Shape shape = moved(linear, root.q);
@@ -160,7 +190,7 @@ const char* to_string(Stability stability)
 StabilityReport stability(const Linearisation& linear)
 {
     StabilityReport report;
-    if (linear.n == 0) return report;
+    if (linear.n + linear.states.n() == 0) return report;
     if (linear.is_conservative) {
         for (const double k :
              generalised_values(symmetric_part(square(linear, linear.K)), square(linear, linear.M))) {

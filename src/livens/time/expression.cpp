@@ -187,6 +187,14 @@ Expression::Expression(std::string_view text, std::vector<std::string> symbols, 
     }
 }
 
+Expression Expression::renumbered(std::span<const int> places) const
+{
+    Expression other = *this;
+    for (Step& step : other.steps_)
+        if (step.operation == Operation::symbol) step.first = places[static_cast<std::size_t>(step.first)];
+    return other;
+}
+
 bool Expression::depends_on(std::size_t symbol) const
 {
     return std::ranges::any_of(steps_, [&](const Step& step) {

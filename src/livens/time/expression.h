@@ -16,6 +16,8 @@
 
 namespace [[gnu::visibility("default")]] livens {
 
+class Expression;
+
 /// What else the text of an expression may hold. Columns are those of steps.
 struct ExpressionWords {
     /// The number that a name stands for; empty: for none. Symbols come first.
@@ -23,6 +25,8 @@ struct ExpressionWords {
     /// Of `text` from `end` on, where the number at `column` has ended: where its unit ends, if it has one,
     /// and the number with it.
     std::function<std::size_t(std::string_view text, std::size_t end, int column, double& number)> unit = {};
+    /// The formula that a name stands for, of the same symbols; null: for none. They come last.
+    std::function<const Expression*(std::string_view name)> formula = {};
 };
 
 /// `-3*phi - 0.2*w + sin(2*pi*t)`: numbers, `+ - * / ^`, parentheses, `pi`, `t` (s), symbols, and
@@ -81,6 +85,8 @@ public:
     const std::string& text() const { return text_; }
     /// What it is made of; the last is the value.
     const std::vector<Step>& steps() const { return steps_; }
+    /// The same of other symbols: number k becomes places[k].
+    Expression renumbered(std::span<const int> places) const;
     /// Whether the value may change with a symbol.
     bool depends_on(std::size_t symbol) const;
 

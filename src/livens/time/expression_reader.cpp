@@ -188,6 +188,8 @@ private:
             return add({Operation::symbol, static_cast<int>(symbol - symbols_.begin()), -1, place});
         if (const std::optional<double> value = words_.constant ? words_.constant(word, place) : std::nullopt)
             return add_number(*value, place);
+        if (const Expression* formula = words_.formula ? words_.formula(word) : nullptr)
+            return inlined(*formula, place);
         refuse("expression-name", "an expression has an unknown name",
                "'" + word + "' at column " + std::to_string(place), "", known_names(word, symbols_));
     }
@@ -203,6 +205,20 @@ private:
         }
         expect(')');
         return add({f.operation, first, second, place});
+    }
+
+    /// Steps of a formula of the same symbols.
+    int inlined(const Expression& formula, int place)
+    {
+        const int before = static_cast<int>(steps_.size());
+        for (Expression::Step step : formula.steps()) {
+            const bool is_symbol = step.operation == Operation::symbol;
+            if (!is_symbol && step.first >= 0) step.first += before;
+            if (step.second >= 0) step.second += before;
+            step.column = place;
+            steps_.push_back(step);
+        }
+        return static_cast<int>(steps_.size()) - 1;
     }
 
     int add_number(double value, int place) { return add({Operation::number, -1, -1, place, value}); }

@@ -44,6 +44,7 @@ struct Span {
     /// rad, at element ends; 0 < accuracy <= 0.1.
     double accuracy = 1e-6;
     std::vector<double> output{};   ///< s; they become element ends
+    double first_length = 0;        ///< s, of elements like those before; 0: there were none
 };
 
 /// Elements that are given, or an accuracy from which they follow.

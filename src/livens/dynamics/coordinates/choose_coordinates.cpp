@@ -44,6 +44,7 @@ std::vector<Candidate> candidates_of(const Model& model, const std::vector<std::
     };
     for (int b = 0; b < model.n_bodies(); ++b) {
         const Body& body = model.bodies()[b];
+        if (body.holds_states()) continue;
         for (int i = 0; i < 3; ++i) add(Of::place, b, i, body.name + "." + "xyz"[i]);
         if (!body.is_point) add(Of::turn, b, 0, body.name + ".quaternion");
     }
@@ -96,7 +97,8 @@ public:
            const std::vector<std::string>& wanted)
         : all_(candidates_of(model, wanted)), n_left_(-static_cast<int>(independent.size()))
     {
-        for (const Body& body : model.bodies()) n_left_ += body.is_point ? 3 : 6;
+        for (const Body& body : model.bodies())
+            if (!body.holds_states()) n_left_ += body.is_point ? 3 : 6;
         const Model with = with_rows_of(model, all_, placed.X);
         std::vector<int> rows(static_cast<std::size_t>(with.n_rows() - model.n_rows()));
         std::iota(rows.begin(), rows.end(), model.n_rows());

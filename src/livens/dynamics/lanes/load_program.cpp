@@ -151,7 +151,7 @@ void LoadProgram::record(const Model& model, RecordedLoads which)
         }
         const std::size_t first = tape_.steps().size();
         load.forces.record(tape_, TapeNumber{&tape_});
-        if (which != RecordedLoads::supplies) continue;
+        if (which != RecordedLoads::supplies || acts_on_states(model, load)) continue;
         const bool has_power = !load.power && !load.potential;
         for (std::size_t i = first, end = tape_.steps().size(); i < end; ++i)
             if (const TapeStep step = tape_.steps()[i]; step.kind == TapeKind::pull)

@@ -136,7 +136,7 @@ void note_moves(const Model& model, std::span<const Matrix34> before, std::span<
 {
     const double length = model.length();
     for (int b = 0; b < model.n_bodies(); ++b) {
-        if (model.bodies()[b].is_rotor) continue;
+        if (!model.bodies()[b].is_matter()) continue;
         const double shift = norm(after[b].column(0) - before[b].column(0));
         double turn = 0;
         for (int i = 1; i < 4; ++i) turn = std::max(turn, norm(after[b].column(i) - before[b].column(i)));
@@ -358,7 +358,8 @@ TriedStart try_consistent_start(const Model& the_model, const State& start, Star
     fault = why_weightless(model, closed.start.X);
     if (fault) return {{}, std::move(*fault)};
     closed.independent = rank.independent;
-    for (const Body& body : model.bodies()) closed.degrees_of_freedom += body.is_point ? 3 : 6;
+    for (const Body& body : model.bodies())
+        if (!body.holds_states()) closed.degrees_of_freedom += body.is_point ? 3 : 6;
     closed.degrees_of_freedom -= static_cast<int>(rank.independent.size());
     closed.redundant = rank.dependent;
     note_redundancy(model, closed);

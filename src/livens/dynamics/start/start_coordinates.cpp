@@ -180,7 +180,8 @@ Chosen choose(const Model& model, const std::vector<Led>& all, std::span<const M
 int freedoms(const Model& model)
 {
     int n = 0;
-    for (const Body& body : model.bodies()) n += body.is_point ? 3 : 6;
+    for (const Body& body : model.bodies())
+        if (!body.holds_states()) n += body.is_point ? 3 : 6;
     return n;
 }
 

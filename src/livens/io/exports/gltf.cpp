@@ -116,7 +116,7 @@ struct Tracks {
 
     void add(const std::vector<BodySample>& bodies, const std::vector<Vector4>& quaternions)
     {
-        for (std::size_t b = 0; b < bodies.size(); ++b) {
+        for (std::size_t b = 0; b < positions.size(); ++b) {
             const BodySample& s = bodies[b];
             // The format asks for the tangent before, the value and the tangent behind; here both tangents
             // are the rate.
@@ -143,8 +143,8 @@ Tracks tracks_of(const ExportInput& input)
 {
     const Run& run = input.run;
     Tracks tracks;
-    tracks.positions.resize(run.body_names.size());
-    tracks.orientations.resize(run.body_names.size());
+    tracks.positions.resize(run.n_told_bodies());
+    tracks.orientations.resize(run.n_told_bodies());
     constexpr double infinite = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 3; ++i) {
         tracks.least[i] = infinite;
@@ -196,7 +196,7 @@ public:
     }
 
 private:
-    int n_bodies() const { return static_cast<int>(run_.body_names.size()); }
+    int n_bodies() const { return static_cast<int>(run_.n_told_bodies()); }
     int n_worn() const { return std::min(n_bodies(), n_colours); }
 
     /// The shortest turn that brings `up` to y, which is up in glTF.

@@ -71,8 +71,8 @@ struct Picture {
 std::string names_of(const Run& run)
 {
     std::string xml = "<Array type=\"String\" Name=\"body_name\" NumberOfTuples=\"" +
-                      std::to_string(run.body_names.size()) + "\" format=\"ascii\">\n";
-    for (const std::string& name : run.body_names) {
+                      std::to_string(run.n_told_bodies()) + "\" format=\"ascii\">\n";
+    for (const std::string& name : run.told_bodies()) {
         for (const char c : name) xml += std::to_string(static_cast<unsigned char>(c)) + " ";
         xml += "0\n";
     }

@@ -97,7 +97,7 @@ public:
         : run_(run), track_(std::move(track)),
           n_nodes_(track_.X.values.size() / static_cast<std::size_t>(track_.X.n_values))
     {
-        for (std::size_t b = 0; b < run_.body_is_point.size(); ++b) {
+        for (std::size_t b = 0; b < run_.n_told_bodies(); ++b) {
             forms_.push_back(run_.body_is_point[b] ? Form::position : Form::quaternion);
             if (!run_.body_is_point[b] && !quaternions_suffice(b)) forms_.back() = Form::directors;
         }

@@ -169,6 +169,7 @@ public:
         most_triangles_ = triangles_of_each(surfaces);
         json_.key("bodies").begin_array();
         for (std::size_t b = 0; b + 1 < all.size(); ++b) {
+            if (scenario.model.bodies()[b].holds_states()) continue;
             const Outline outline = b < scenario.outlines.size() ? scenario.outlines[b] : Outline{};
             write_body(scenario.model.bodies()[b], outline, all[b]);
         }
@@ -316,6 +317,7 @@ void write_loads(JsonWriter& json, const Model& model, const Motion& motion)
     json.key("loads").begin_array();
     for (std::size_t l = 0; l < lines.size(); ++l) {
         const Load& load = model.loads()[l];
+        if (load.type == controller_type) continue;
         json.begin_object().member("name", load.name).member("type", load.type);
         json.member("first", load.bodies[0]).member("second", load.bodies[1]);
         for (const int side : {0, 1}) {

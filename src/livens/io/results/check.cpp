@@ -74,7 +74,7 @@ void check_motion(const Motion& m)
             "the number of accelerations at element ends");
     for (std::size_t k = 0; k < m.impacts.ends.size(); ++k)
         require(m.impacts.ends[k] > (k == 0 ? 0 : m.impacts.ends[k - 1]) &&
-                    m.impacts.ends[k] < m.n_elements(),
+                    m.impacts.ends[k] <= m.n_elements(),
                 "impacts at element ends, in order");
     for (const auto* before : {&m.impacts.momenta, &m.impacts.velocities})
         require(before->size() == m.impacts.ends.size() * bodies, "the number of velocities before impacts");
@@ -101,7 +101,8 @@ void check_run(const Run& run)
     check_motion(run.motion);
     const std::size_t bodies = static_cast<std::size_t>(run.motion.n_bodies);
     require(run.body_names.size() == bodies && run.body_is_point.size() == bodies &&
-                run.centers_of_mass.size() == bodies,
+                run.centers_of_mass.size() == bodies &&
+                (run.body_holds_states.empty() || run.body_holds_states.size() == bodies),
             "the number of bodies");
     require(run.row_labels.size() == static_cast<std::size_t>(run.motion.n_rows),
             "the number of constraint rows");

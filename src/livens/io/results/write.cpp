@@ -129,6 +129,8 @@ void RunWriter::field(VariableInfo info, const Field& field)
 Run make_run(const Model& model, Solution solution, const Method& method)
 {
     Run run;
+    if (std::ranges::any_of(model.bodies(), &Body::holds_states))
+        for (const Body& body : model.bodies()) run.body_holds_states.push_back(body.holds_states());
     for (const Body& body : model.bodies()) {
         run.body_names.push_back(body.name);
         run.body_is_point.push_back(body.is_point);

@@ -9,6 +9,7 @@
 #include "livens/base/error.h"
 #include "livens/io/scenario/bodies/bodies.h"
 #include "livens/io/scenario/bodies/named_points.h"
+#include "livens/io/scenario/controllers/controllers.h"
 #include "livens/io/scenario/events/events.h"
 #include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/loads/load_kinds.h"
@@ -201,6 +202,24 @@ void Assembly::read_all_sensors(bool of_loads)
                 builder_.model().add_sensor(relocated(all[s], part.to_));
         });
     read_sensors(builder_, of_loads);
+    if (of_loads && sources_.findings.n_errors() == 0) add_controller_sensors(builder_);
+}
+
+void Assembly::read_all_controllers()
+{
+    each_part(
+        [](Assembly& part) {
+            part.to_.n_early = part.builder_.model().n_bodies();
+            part.read_all_controllers();
+        },
+        [&](Assembly& part) {
+            const std::vector<Body>& all = part.builder_.model().bodies();
+            part.to_.first_late = builder_.model().n_bodies();
+            for (auto b = static_cast<std::size_t>(part.to_.n_early); b < all.size(); ++b)
+                builder_.model().add_body(relocated(all[b], part.to_));
+            take_controllers(part.builder_, part.to_, builder_);
+        });
+    read_controllers(builder_);
 }
 
 void Assembly::read_all_loads()
@@ -210,8 +229,11 @@ void Assembly::read_all_loads()
                   part.to_.first_load = static_cast<int>(builder_.model().loads().size());
                   for (const Load& load : part.builder_.model().loads())
                       builder_.model().add_load(relocated(load, part.to_));
+                  for (const Sampling& sampling : part.builder_.model().samplings())
+                      builder_.model().add_sampling(relocated(sampling, part.to_));
               });
     read_loads(builder_);
+    read_changes(builder_);
 }
 
 void Assembly::read_all_events(bool is_run)
@@ -255,10 +277,21 @@ void Assembly::read_model()
     if (!check_count(builder_.model().joints().size(), "joints")) return;
     read_all_drives();
     read_all_sensors(false);
+    read_all_controllers();
     read_all_loads();
     read_all_sensors(true);
     read_all_events(true);
+    complete_looks();
     check_count(builder_.model().loads().size(), "loads");
+}
+
+/// What holds states of controllers is not to be seen; the world stands last.
+void Assembly::complete_looks()
+{
+    const auto n = static_cast<std::size_t>(builder_.model().n_bodies());
+    std::vector<Outline>& outlines = builder_.outlines();
+    while (!outlines.empty() && outlines.size() < n + 1) outlines.insert(outlines.end() - 1, Outline{});
+    if (!builder_.parts().empty()) builder_.parts().resize(std::max(builder_.parts().size(), n));
 }
 
 bool Assembly::states_velocity() const
@@ -275,7 +308,7 @@ void Assembly::read_ends(bool is_given, State& end)
         State own{0, std::vector<Matrix34>(n), std::vector<Matrix34>(n)};
         part->read_ends(is_given, own);
         for (std::size_t b = 0; is_given && !part->is_refused_ && b < n; ++b) {
-            const std::size_t at = static_cast<std::size_t>(part->to_.first_body) + b;
+            const auto at = static_cast<std::size_t>(part->to_.body(static_cast<int>(b)));
             end.X[at] = part->to_.by.of_configuration(own.X[b]);
             end.V[at] = part->to_.by.rotation * own.V[b];
         }

@@ -83,9 +83,11 @@ private:
     void settle();
     void read_all_drives();
     void read_all_sensors(bool of_loads);
+    void read_all_controllers();
     void read_all_loads();
     void read_all_events(bool is_run);
 
+    void complete_looks();
     bool check_count(std::size_t n, const std::string& what) const;
     void take_bodies(Assembly& part);
     template <class Read, class Take>

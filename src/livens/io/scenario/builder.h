@@ -12,6 +12,7 @@
 #include "livens/base/error.h"
 #include "livens/io/scenario.h"
 #include "livens/io/scenario/bodies/meshes.h"
+#include "livens/io/scenario/joints/inputs.h"
 #include "livens/io/scenario/schema/section.h"
 
 namespace livens::inline io_internal {
@@ -46,6 +47,8 @@ public:
     std::vector<std::vector<NamedSurface>>& surfaces() { return surfaces_; }   ///< of the bodies so far
     MeshStore& meshes() { return meshes_; }
     std::vector<StatedConditions>& conditions() { return conditions_; }
+    std::vector<ReadController>& controllers() { return controllers_; }
+    const std::vector<ReadController>& controllers() const { return controllers_; }
     /// Once all bodies are there, also those around what is included.
     void set_length(double length);
     std::unordered_map<std::string, BodyReference>& bodies() { return bodies_; }
@@ -111,6 +114,7 @@ private:
     std::vector<std::vector<NamedSurface>> surfaces_;
     MeshStore& meshes_;
     std::vector<StatedConditions> conditions_;
+    std::vector<ReadController> controllers_;
     std::vector<std::string> excused_;
     std::unordered_map<std::string, BodyReference> bodies_;
     std::map<std::string, SourceLocation> places_;

@@ -107,7 +107,9 @@ public:
           tables_(model, ends_.independent, false, problem.prepared->pattern(model)),
           stops_(stops_of(model, span)), method_(method), search_{degree_of(method) == 0},
           tolerance_(first_share * span.accuracy),
-          length_(std::min(0.01 * (span.end - span.start), time_of_motion(model, ends_.start)))
+          length_(span.first_length > 0
+                      ? std::min(span.first_length, span.end - span.start)
+                      : std::min(0.01 * (span.end - span.start), time_of_motion(model, ends_.start)))
     {
         const bool is_high = span.accuracy < high_accuracy;
         if (search_.is_free && std::holds_alternative<Radau>(method_))
@@ -367,7 +369,11 @@ double time_of_motion(const Model& model, const State& state)
 {
     const double length = model.length();
     double rate = std::sqrt(norm(model.gravity()) / length);
-    for (const Matrix34& V : state.V) rate = std::max({rate, norm(V.column(0)) / length, norm(directors(V))});
+    for (std::size_t b = 0; b < state.V.size(); ++b) {
+        if (model.bodies()[b].holds_states()) continue;
+        const Matrix34& V = state.V[b];
+        rate = std::max({rate, norm(V.column(0)) / length, norm(directors(V))});
+    }
     return 0.5 / rate;
 }
 

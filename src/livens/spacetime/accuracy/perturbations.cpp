@@ -93,11 +93,13 @@ std::array<Vector3, n_perturbations> within(const std::array<bool, 3>& allowed, 
     return e;
 }
 
-/// In lengths and rad.
+/// In lengths and rad; of bodies that are matter.
 double widest(const Model& model, std::span<const Matrix34> difference)
 {
     double farthest = 0, turned = 0;
-    for (const Matrix34& d : difference) {
+    for (std::size_t b = 0; b < difference.size(); ++b) {
+        if (model.bodies()[b].holds_states()) continue;
+        const Matrix34& d = difference[b];
         farthest = std::max(farthest, norm(d.column(0)));
         turned = std::max(turned, norm(directors(d)) / std::sqrt(2.0));
     }
@@ -110,8 +112,11 @@ double fastest_rate(const Model& model, std::span<const Matrix34> velocities)
 {
     const double length = model.length();
     double rate = std::sqrt(norm(model.gravity()) / length);
-    for (const Matrix34& V : velocities)
+    for (std::size_t i = 0; i < velocities.size(); ++i) {
+        if (model.bodies()[i % model.bodies().size()].holds_states()) continue;
+        const Matrix34& V = velocities[i];
         rate = std::max({rate, norm(V.column(0)) / length, norm(directors(V)) / std::sqrt(2.0)});
+    }
     return rate;
 }
 
@@ -126,6 +131,8 @@ std::vector<Kicks> kicks_everywhere(const Model& model, const State& state, doub
         const Across step(noise), turn(noise), push(noise), spin(noise, turning);
         for (int k = 0; k < n_perturbations; ++k)
             all[k][b] = {length * step.e[k], turn.e[k], length * rate * push.e[k], rate * spin.e[k]};
+        const double speed = model.bodies()[b].state_speed;
+        for (int k = 0; speed > 0 && k < n_perturbations; ++k) all[k][b] = {{}, {}, speed * push.e[k], {}};
     }
     return all;
 }
@@ -231,8 +238,12 @@ double Difference::size_of_places(const Model& model) const { return widest(mode
 
 double Difference::size(const Model& model, double rate) const
 {
-    const double of_places = size_of_places(model);
-    return rate > 0 ? std::max(of_places, widest(model, V) / rate) : of_places;
+    double size = size_of_places(model);
+    if (rate > 0) raise_to(size, widest(model, V) / rate);
+    for (std::size_t b = 0; b < V.size(); ++b)   // states are velocities, by their size
+        if (const double speed = model.bodies()[b].state_speed; speed > 0)
+            raise_to(size, norm(V[b].column(0)) / speed);
+    return size;
 }
 
 Growing Difference::most(const Model& model, std::span<const Matrix34> places) const
@@ -241,6 +252,7 @@ Growing Difference::most(const Model& model, std::span<const Matrix34> places) c
     double size = 0;
     for (std::size_t b = 0; b < X.size(); ++b) {
         const Matrix34& d = X[b];
+        if (model.bodies()[b].holds_states()) continue;
         const bool has_moved = raise_to(size, norm(d.column(0)) / model.length()),
                    has_turned = raise_to(size, norm(directors(d)) / std::sqrt(2.0));
         if (!has_moved && !has_turned) continue;
@@ -259,6 +271,10 @@ double Difference::of_bodies(const Model& model, const State& one, const State& 
     double size = 0;
     for (std::size_t b = 0; b < one.X.size(); ++b) {
         const Matrix34 dX = one.X[b] - other.X[b], dV = one.V[b] - other.V[b];
+        if (const double speed = model.bodies()[b].state_speed; speed > 0) {
+            raise_to(size, norm(dV.column(0)) / speed);
+            continue;
+        }
         raise_to(size, norm(dX.column(0)) / model.length());
         raise_to(size, norm(dV.column(0)) / model.length() * in_time);
         if (model.bodies()[b].is_point) continue;

@@ -318,7 +318,7 @@ private:
                         {joint.name + "." + q.name + (derivative == 1 ? "_rate" : ""), "", q, derivative});
         for (const Body& body : model.bodies())
             for (const char* what : {"position", "rotation", "velocity", "angular_velocity"}) {
-                if (body.is_rotor || (body.is_point && (what[0] == 'r' || what[0] == 'a'))) continue;
+                if (!body.is_matter() || (body.is_point && (what[0] == 'r' || what[0] == 'a'))) continue;
                 const std::vector<StateQuantity> three = state_quantities(model, body.name + "." + what);
                 all.insert(all.end(), three.begin(), three.end());
             }

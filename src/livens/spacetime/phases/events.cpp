@@ -144,6 +144,20 @@ void join(Motion& whole, Motion&& next, bool jumps)
     std::ranges::sort(whole.redundant_rows);
 }
 
+void jump_at_end(Motion& motion, const Model& model, const std::vector<Matrix34>& V)
+{
+    const auto n = static_cast<std::ptrdiff_t>(V.size());
+    motion.impacts.ends.push_back(motion.n_elements());
+    for (auto [now, before] : {std::pair(&motion.momenta, &motion.impacts.momenta),
+                               std::pair(&motion.velocities, &motion.impacts.velocities)})
+        before->insert(before->end(), now->end() - n, now->end());
+    for (std::ptrdiff_t b = 0; b < n; ++b) {
+        *(motion.velocities.end() - n + b) = V[static_cast<std::size_t>(b)];
+        *(motion.momenta.end() - n + b) =
+            V[static_cast<std::size_t>(b)] * model.bodies()[static_cast<std::size_t>(b)].mass;
+    }
+}
+
 void drop_last(Motion& motion)
 {
     const auto n = static_cast<std::size_t>(motion.n_elements());

@@ -25,6 +25,9 @@ void widen(Motion& motion, const Model& model, const ActingModel& acting);
 /// `jumps`: there is an impact between them.
 void join(Motion& whole, Motion&& next, bool jumps);
 
+/// Velocities become others where the motion ends, as at an impact.
+void jump_at_end(Motion& motion, const Model& model, const std::vector<Matrix34>& V);
+
 /// The motion up to its last element but one.
 void drop_last(Motion& motion);
 

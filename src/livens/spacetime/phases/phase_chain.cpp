@@ -11,6 +11,8 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/diagnostics/largest.h"
+#include "livens/multibody/unwrapped_angles.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/phases/contacts.h"
@@ -31,7 +33,7 @@ constexpr int most_turns = 60;
 constexpr double touching_start = 1e-12;
 
 /// From an instant on, until another that it may have as an end.
-Time part_of(const Time& time, double first, double last, double accuracy)
+Time part_of(const Time& time, double first, double last, double accuracy, double first_length)
 {
     const double gap = nearest_ends * (end_of(time) - start_of(time));
     const auto inside = [&](const std::vector<double>& all) {
@@ -41,7 +43,7 @@ Time part_of(const Time& time, double first, double last, double accuracy)
         return some;
     };
     const auto* mesh = std::get_if<TimeMesh>(&time);
-    if (mesh == nullptr) return Span{first, last, accuracy, inside(std::get<Span>(time).output)};
+    if (mesh == nullptr) return Span{first, last, accuracy, inside(std::get<Span>(time).output), first_length};
     TimeMesh part{{first}, inside(mesh->required), inside(mesh->bends)};
     const std::vector<double> ends = inside(mesh->ends);
     const bool is_end = std::ranges::binary_search(mesh->ends, first);
@@ -79,6 +81,7 @@ public:
         Way at{problem_, options_, Decisions(given_, start_of(time_)), start_of(time_)};
         at.method = std::move(method);
         begin_at_stops(at, whole);
+        if (State& start = at.problem.conditions.start; !start.is_of_motion) ask_controllers(start);
         while (at.first < known_.back()) {
             if (at.first > known_.front() &&
                 !is_met(decided(at), whole.motion, whole.motion.n_elements(), known_.back() - known_.front(),
@@ -99,6 +102,7 @@ private:
         double first;   // where the phase begins
         Method method{};
         bool jumps = false;   // behind an impact
+        double length = 0;    // of the longest element of the phase before
     };
 
     Model decided(const Way& at) const
@@ -137,6 +141,8 @@ private:
             next.report.status = SolveStatus::converged;   // the whole is judged, not a part of it
             next.report.message.clear();
         }
+        at.length = 0;
+        for (int e = 0; e < next.motion.n_elements(); ++e) raise_to(at.length, next.motion.mesh.length(e));
         State reached = next.motion.at_end(next.motion.n_elements());   // with angles that events count
         widen(next.motion, stated_, acting);
         whole.method = next.method;
@@ -146,6 +152,10 @@ private:
         if (!whole.report.converged()) return false;
         at.first = end;
         const bool goes_on = act(at, fired, reached, whole);
+        if (goes_on && ask_controllers(reached)) {
+            at.jumps = true;
+            if (at.first >= known_.back()) jump_at_end(whole.motion, stated_, reached.V);
+        }
         at.problem.conditions.start = std::move(reached);
         at.options.initial = StartPolicy::project;   // an end state holds its joints to rounding
         return goes_on;
@@ -203,7 +213,7 @@ private:
     /// A phase that cannot begin leaves what was solved before it.
     Solution solve_next(const Model& model, const Way& at, double last, double accuracy) const
     {
-        const Time part = part_of(time_, at.first, last, accuracy);
+        const Time part = part_of(time_, at.first, last, accuracy, at.length);
         const auto solve = [&] { return solve_phase_(model, at.problem, part, at.method, at.options); };
         if (at.first == known_.front()) return solve();
         try {
@@ -279,10 +289,37 @@ private:
             }
             at.decisions.act(stated_, action, at.first);
             whole.events.push_back({e, at.first});
+            if (action.does == EventAction::Does::set) {
+                change(stated_.events()[static_cast<std::size_t>(e)].change, reached);
+                at.jumps = at.first > known_.front();
+            }
             goes_on = goes_on && action.does != EventAction::Does::end_motion;
         }
         if (!goes_on) return false;
         return meet(at, met, reached, whole) && !is_storm(whole);
+    }
+
+    /// Those that are asked at this instant, in their order. False: there are none.
+    bool ask_controllers(State& state) const
+    {
+        if (stated_.samplings().empty()) return false;
+        const double gap = nearest_ends * (known_.back() - known_.front());
+        bool is_any = false;
+        for (const Sampling& sampling : stated_.samplings()) {
+            const double k = std::round((state.t - sampling.first) / sampling.every),
+                         instant = sampling.first + k * sampling.every;
+            if (k < 0 || std::abs(instant - state.t) > gap || instant > sampling.last + gap) continue;
+            change(sampling.change, state);
+            is_any = true;
+        }
+        return is_any;
+    }
+
+    void change(const StateChange& change, State& state) const
+    {
+        const UnwrappedAngles turns(stated_);
+        change_states(stated_.loads()[static_cast<std::size_t>(change.load)], change,
+                      {state.t, Side::right}, state.X, turns.of(change.load, state.angles), state.V);
     }
 
     /// Impacts of joints that these events begin, and of those that begin there as stated.
@@ -314,7 +351,7 @@ private:
                 whole.events.push_back({static_cast<int>(e), at.first});
             }
         reached.V = std::move(outcome.V);
-        at.jumps = outcome.jumps && at.first > known_.front();
+        at.jumps = at.jumps || (outcome.jumps && at.first > known_.front());
         return true;
     }
 

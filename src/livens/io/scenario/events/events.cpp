@@ -9,7 +9,9 @@
 
 #include "livens/io/scenario/joints/expressions.h"
 #include "livens/io/scenario/joints/joints.h"
+#include "livens/io/scenario/loads/load_makers.h"
 #include "livens/io/scenario/text/parameters.h"
+#include "livens/multibody/controllers.h"
 
 namespace livens::inline io_internal {
 
@@ -97,6 +99,7 @@ EventTerms terms_of(const Builder& builder, const Section& section, const std::s
     for (const std::string& formula : formulas)
         for (const std::string& name : names_with_points(formula)) {
             const bool is_known = std::ranges::find(inputs.symbols, name) != inputs.symbols.end() ||
+                                  inputs.formula(name) != nullptr ||
                                   std::ranges::find(reactions, name) != reactions.end();
             if (is_known) continue;
             if (const std::optional<ReactionInput> input = reaction_of(builder.model(), name)) {
@@ -109,7 +112,8 @@ EventTerms terms_of(const Builder& builder, const Section& section, const std::s
     std::vector<std::string> symbols = inputs.symbols;
     symbols.insert(symbols.end(), reactions.begin(), reactions.end());
     std::vector<Expression> expressions;
-    const ExpressionWords words = words_of_formulas(section.parameters());
+    ExpressionWords words = words_of_formulas(section.parameters());
+    words.formula = [&](std::string_view name) { return inputs.formula(name); };
     for (const std::string& formula : formulas) {
         expressions.emplace_back(formula, symbols, words);
         if (!expressions.back().guards().empty())
@@ -129,13 +133,51 @@ EventTerms terms_of(const Builder& builder, const Section& section, const std::s
     return terms;
 }
 
+/// The load that tells what states become.
+std::string name_of_change(const std::string& event) { return "set by " + event; }
+
+std::string name_of(const Section& event)
+{
+    return event.has("name") ? event.text("name") : event.text("when");
+}
+
+/// That a controller has the state, which is looked at.
+std::string state_of(const Builder& builder, const std::string& name, const std::string& path, Inputs& inputs)
+{
+    for (const ReadController& controller : builder.controllers())
+        for (const ReadController::State& state : controller.states) {
+            if (controller.name + "." + state.name != name) continue;
+            inputs.coordinates.push_back({state.coordinate, 0, false});
+            return name;
+        }
+    throw InputError({"controller-state", path, "there is no such state of a controller", "'" + name + "'", "",
+                      "", "as in { \"pid.i\" = \"0\" }"});
+}
+
+/// What an event sets. Throws InputError.
+StateChange change_of(const Builder& builder, const std::string& event)
+{
+    StateChange change;
+    const std::vector<Load>& loads = builder.model().loads();
+    const auto load = std::ranges::find(loads, name_of_change(event), &Load::name);
+    if (load == loads.end()) return change;   // what is wrong was told
+    change.load = static_cast<int>(load - loads.begin());
+    for (const LoadReading& reading : load->readings)
+        for (const ReadController& controller : builder.controllers())
+            for (const ReadController::State& state : controller.states)
+                if (controller.name + "." + state.name == reading.name) change.states.push_back(state.coordinate);
+    return change;
+}
+
 void add_event(Builder& builder, const Section& section, const std::string& name, const std::string& text,
                const EventAction& action, const std::string& path)
 {
     builder.remember("event[" + name + "]", section);
     builder.guard(path, [&] {
         try {
-            builder.model().add_event({name, text, terms_of(builder, section, text, path), action});
+            Event event{name, text, terms_of(builder, section, text, path), action};
+            if (action.does == EventAction::Does::set) event.change = change_of(builder, name);
+            builder.model().add_event(std::move(event));
         } catch (const InputError& error) {
             Complaint complaint = error.complaint();
             if (complaint.path.starts_with(path + ".")) complaint.path = path;   // the condition is the place
@@ -170,7 +212,42 @@ Table event_table()
              "Comparison of two formulas of joint coordinates, rates, sensors, points, reactions of "
              "joints and the time `t`, such as `\"stone.z < 0\"`; several with `and` or `or` between them."}
              .needed(),
+         Key{"set", types::named_texts,
+             "New values of states of controllers, as in `{ \"pid.i\" = \"0\" }`. Formulas read what was "
+             "before."},
          choice("action", {"note", "stop"}, "note: the event is reported; stop: the motion ends there.")}};
+}
+
+void read_changes(Builder& builder)
+{
+    for (const Section& section : builder.top().sections("event")) {
+        const Value* given = section.find("set");
+        if (!section.is_valid() || given == nullptr) continue;
+        const std::string path = "event[" + name_of(section) + "].set";
+        builder.remember("event[" + name_of(section) + "]", section);
+        builder.guard(path, [&] {
+            Inputs inputs;
+            std::vector<LawReading> next;
+            std::vector<std::string> names;
+            for (const Entry& entry : given->node->entries()) names.push_back(entry.key);
+            for (const std::string& text : given->texts)
+                for (const std::string& name : names_with_points(text))
+                    if (std::ranges::find(inputs.symbols, name) == inputs.symbols.end() &&
+                        inputs.formula(name) == nullptr)
+                        add_input(builder, inputs, name, name, path);
+            ExpressionWords words = words_of_formulas(section.parameters());
+            words.formula = [&](std::string_view name) { return inputs.formula(name); };
+            for (std::size_t k = 0; k < names.size(); ++k) {
+                const std::string known = state_of(builder, names[k], path, inputs);
+                const Expression formula(given->texts[k], inputs.symbols, words);
+                next.push_back({known, "", [formula, inputs](const LawArguments& at) {
+                                    return formula(at.at.t, numbers_of(inputs, at));
+                                }});
+            }
+            builder.model().add_load(
+                observer(name_of_change(name_of(section)), inputs.coordinates, next, places(builder)));
+        });
+    }
 }
 
 void read_events(Builder& builder, bool is_run)
@@ -191,9 +268,9 @@ void read_events(Builder& builder, bool is_run)
     }
     for (const Section& section : builder.top().sections("event")) {
         if (!section.is_valid()) continue;
-        const std::string text = section.text("when"),
-                          name = section.has("name") ? section.text("name") : text;
+        const std::string text = section.text("when"), name = name_of(section);
         EventAction action;
+        if (section.has("set")) action.does = EventAction::Does::set;
         if (section.text("action") == "stop") action.does = EventAction::Does::end_motion;
         add_event(builder, section, name, text, action, "event[" + name + "].when");
     }

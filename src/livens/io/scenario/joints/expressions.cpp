@@ -73,14 +73,67 @@ void add_reading(Inputs& inputs, const Sensor& sensor, const std::string& symbol
 
 }   // namespace
 
+namespace {
+
+/// A formula of other symbols becomes one of these, which are told apart by `owner`.
+Expression taken_in(const Expression& formula, const Inputs& of, const std::string& owner, Inputs& inputs)
+{
+    std::vector<int> places;
+    for (std::size_t k = 0; k < of.symbols.size(); ++k) {
+        places.push_back(-1);
+        if (!formula.depends_on(k)) continue;
+        // No text can have a name like this.
+        const std::string name = of.symbols[k].find('(') == std::string::npos
+                                     ? owner + ".(" + of.symbols[k] + ")"
+                                     : of.symbols[k];
+        const auto known = std::ranges::find(inputs.symbols, name);
+        places.back() = static_cast<int>(known - inputs.symbols.begin());
+        if (known != inputs.symbols.end()) continue;
+        inputs.symbols.push_back(name);
+        inputs.reads.push_back({inputs.coordinates.size(), of.reads[k].is_rate});
+        inputs.coordinates.push_back(of.coordinates[of.reads[k].coordinate]);
+    }
+    return formula.renumbered(places);
+}
+
+/// A state or output.
+void add_number(Inputs& inputs, const ReadController& controller, const std::string& symbol,
+                const std::string& text, const std::string& path)
+{
+    const std::string what = split(text).what;
+    std::string has;
+    for (const ReadController::State& state : controller.states) {
+        has += (has.empty() ? "it has " : ", ") + state.name;
+        if (state.name != what) continue;
+        inputs.symbols.push_back(symbol);
+        inputs.reads.push_back({inputs.coordinates.size(), true});
+        inputs.coordinates.push_back({state.coordinate, 0, false});
+        return;
+    }
+    for (const ReadController::Output& output : controller.outputs) {
+        has += (has.empty() ? "it has " : ", ") + output.name;
+        if (output.name != what) continue;
+        inputs.formulas.emplace_back(symbol,
+                                     taken_in(output.formula, output.inputs, controller.name, inputs));
+        return;
+    }
+    refuse_input("input-unknown", path, symbol, text,
+                 "controller '" + controller.name + "' has no such state or output", has);
+}
+
+}   // namespace
+
 void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol, const std::string& text,
                const std::string& path)
 {
     const Reference reference = split(text);
+    for (const ReadController& controller : builder.controllers())
+        if (controller.name == reference.name) return add_number(inputs, controller, symbol, text, path);
     const bool is_rate = reference.what.ends_with(rate_suffix);
     const std::string what =
         is_rate ? reference.what.substr(0, reference.what.size() - rate_suffix.size()) : reference.what;
     std::vector<std::string_view> known;
+    for (const ReadController& controller : builder.controllers()) known.push_back(controller.name);
     for (const Joint& joint : builder.model().joints()) {
         known.push_back(joint.name);
         if (joint.name != reference.name) continue;
@@ -155,19 +208,24 @@ std::vector<Key> expression_keys(bool is_vector)
                 "s"}};
 }
 
+void read_named_inputs(const Builder& builder, const Section& section, Inputs& inputs, const std::string& path)
+{
+    const Value* given = section.find("inputs");
+    if (given == nullptr) return;
+    const std::vector<Entry>& entries = given->node->entries();
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        add_input(builder, inputs, entries[i].key, given->texts[i], path);
+}
+
 Inputs read_inputs(const Builder& builder, const Section& section, const std::string& path)
 {
     Inputs inputs;
-    if (const Value* given = section.find("inputs")) {
-        const std::vector<Entry>& entries = given->node->entries();
-        for (std::size_t i = 0; i < entries.size(); ++i)
-            add_input(builder, inputs, entries[i].key, given->texts[i], path);
-    }
+    read_named_inputs(builder, section, inputs, path);
     if (const Value* given = section.find("expression"))
         for (const std::string& text : texts_of(*given))
             for (const std::string& name : names_with_points(text)) {
-                const bool is_known =
-                    std::ranges::find(inputs.symbols, name) != inputs.symbols.end() || is_of_a_library(name);
+                const bool is_known = std::ranges::find(inputs.symbols, name) != inputs.symbols.end() ||
+                                      inputs.formula(name) != nullptr || is_of_a_library(name);
                 if (!is_known) add_input(builder, inputs, name, name, path);
             }
     return inputs;
@@ -192,10 +250,15 @@ std::vector<Expression> read_expressions(const Section& section, const Inputs& i
         if (parameters.find(symbol) != nullptr)
             refuse_input("parameter-name", path, symbol, "", "a parameter has this name, too",
                          "call one of them otherwise");
-    const ExpressionWords words{[&](std::string_view name, int) -> std::optional<double> {
+    ExpressionWords words{[&](std::string_view name, int) -> std::optional<double> {
         const Parameters::One* one = parameters.find(name);
         return one == nullptr ? std::nullopt : std::optional(one->amount.value);
     }};
+    std::vector<std::string_view> used;   // formulas
+    words.formula = [&](std::string_view name) {
+        used.push_back(name);
+        return inputs.formula(name);
+    };
     for (const std::string& text : texts_of(*section.find("expression"))) {
         try {
             all.emplace_back(text, inputs.symbols, words);
@@ -206,6 +269,9 @@ std::vector<Expression> read_expressions(const Section& section, const Inputs& i
             throw InputError(complaint);
         }
     }
+    for (const auto& [name, formula] : inputs.formulas)
+        if (std::ranges::find(used, name) == used.end())
+            refuse_input("input-unused", path, name, "", "no expression has it", "leave it out");
     for (std::size_t k = 0; k < inputs.symbols.size(); ++k)
         // A symbol that no formula has is a misspelt one in most cases.
         if (std::ranges::none_of(all, [&](const Expression& one) { return one.depends_on(k); }))
@@ -218,6 +284,13 @@ std::vector<double> breaks_of(const Builder& builder, const Section& section,
 {
     std::vector<double> breaks;
     if (const Value* given = section.find("breaks")) breaks = given->numbers;
+    add_breaks(builder, expressions, breaks);
+    return breaks;
+}
+
+void add_breaks(const Builder& builder, const std::vector<Expression>& expressions,
+                std::vector<double>& breaks)
+{
     const Section* time = only_section(builder.run(), "time");
     for (const Expression& one : expressions) {
         if (time == nullptr || !time->is_valid()) break;
@@ -228,12 +301,8 @@ std::vector<double> breaks_of(const Builder& builder, const Section& section,
     std::ranges::sort(breaks);
     const auto repeated = std::unique(breaks.begin(), breaks.end());
     breaks.erase(repeated, breaks.end());
-    return breaks;
 }
 
-namespace {
-
-/// What the symbols of expressions stand for.
 std::vector<double> numbers_of(const Inputs& inputs, const LawArguments& at)
 {
     std::vector<double> numbers;
@@ -242,7 +311,31 @@ std::vector<double> numbers_of(const Inputs& inputs, const LawArguments& at)
     return numbers;
 }
 
-}   // namespace
+LoadParts parts_of(const std::vector<Expression>& expressions, const Inputs& inputs,
+                   const std::vector<double>& breaks, const TimeFunction& acts)
+{
+    LoadParts parts;
+    parts.coordinates = inputs.coordinates;
+    const LoadLaw law = law_of(expressions, inputs, breaks);
+    parts.law = [law, acts](const LawArguments& at, std::span<double> factors, std::span<double> slopes) {
+        law(at, factors, slopes);
+        // Outside of its interval the load is off, and its slopes have to vanish with it.
+        if (acts(at.at).value == 1) return;
+        std::ranges::fill(factors, 0.0);
+        std::ranges::fill(slopes, 0.0);
+    };
+    parts.recorded_law = recorded_law_of(expressions, inputs, breaks, acts);
+    for (const Inputs::Read& read : inputs.reads) parts.depends_on_rates |= read.is_rate;
+    parts.guards = guards_of(expressions, inputs);
+    parts.is_smooth = std::ranges::all_of(expressions, [](const Expression& e) { return e.is_affine(); });
+    parts.steepest = steepness_of(expressions, inputs);
+    parts.breaks = acts.breaks();
+    parts.breaks.insert(parts.breaks.end(), breaks.begin(), breaks.end());
+    parts.domain =
+        "its expression has no value there (0/0, as w/abs(w) at rest), or reads an angle more than 175 "
+        "degrees from its start";
+    return parts;
+}
 
 LoadLaw law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
                const std::vector<double>& breaks)
@@ -283,6 +376,19 @@ LawSteepness steepness_of(const std::vector<Expression>& expressions, const Inpu
             // at laws).
             bounds[k] = expressions[k].over(t, symbols).slope.size();
     };
+}
+
+void warn_of_kinks(Builder& builder, const Section& section, std::string_view key,
+                   const std::vector<Expression>& expressions)
+{
+    for (const Expression& one : expressions)
+        if (const std::string kink = one.kink_by_symbols(); !kink.empty())
+            builder.findings().warning(
+                section.place(key), "expression-kink",
+                section.label() + " may jump or bend where the motion decides: " + kink,
+                {"no element ends there but of lobatto and radau, forwards one after the other, so that the "
+                 "estimated error may miss it as well",
+                 "take the family lobatto, or a smooth law such as tanh"});
 }
 
 LawGuards guards_of(const std::vector<Expression>& expressions, const Inputs& inputs)

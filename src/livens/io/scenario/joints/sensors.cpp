@@ -149,6 +149,7 @@ void read_sensors(Builder& builder, bool of_loads)
     // Expressions write `name.quantity` for joints and sensors alike, so the names are one set.
     for (const Joint& joint : builder.model().joints()) taken.insert(joint.name);
     for (const Sensor& sensor : builder.model().sensors()) taken.insert(sensor.name);
+    for (const ReadController& one : builder.controllers()) taken.insert(one.name);
     for (const Section& section : builder.top().sections("sensor"))
         if (reads_load(section) == of_loads) read_sensor(builder, section, taken);
 }

@@ -80,41 +80,14 @@ Load by_formula(const LoadSources& p, const std::string& type, const FactorName&
                 std::vector<Load> units, const Inputs& inputs)
 {
     const std::vector<Expression> expressions = read_expressions(p.section, inputs, p.path());
-    LoadParts parts;
+    LoadParts parts = parts_of(expressions, inputs, breaks_of(p.builder, p.section, expressions),
+                               while_it_acts(p.section, 1.0));
     parts.units = std::move(units);
-    parts.coordinates = inputs.coordinates;
-    const std::vector<double> breaks = breaks_of(p.builder, p.section, expressions);
-    const LoadLaw law = law_of(expressions, inputs, breaks);
-    const TimeFunction acts = while_it_acts(p.section, 1.0);
-    parts.law = [law, acts](const LawArguments& at, std::span<double> factors, std::span<double> slopes) {
-        law(at, factors, slopes);
-        // Outside of its interval the load is off, and its slopes have to vanish with it.
-        if (acts(at.at).value == 1) return;
-        std::ranges::fill(factors, 0.0);
-        std::ranges::fill(slopes, 0.0);
-    };
-    parts.recorded_law = recorded_law_of(expressions, inputs, breaks, acts);
-    for (const Inputs::Read& read : inputs.reads) parts.depends_on_rates |= read.is_rate;
-    parts.guards = guards_of(expressions, inputs);
-    parts.is_smooth = std::ranges::all_of(expressions, [](const Expression& e) { return e.is_affine(); });
-    parts.steepest = steepness_of(expressions, inputs);
-    parts.breaks = acts.breaks();
     for (std::size_t k = 0; k < parts.units.size(); ++k) {
         const std::string name = parts.units.size() == 1 ? factor.name : std::string(1, "xyz"[k]);
         parts.readings.push_back(factor_reading(name, factor.unit, parts.law, k, parts.units.size()));
     }
-    parts.breaks.insert(parts.breaks.end(), breaks.begin(), breaks.end());
-    parts.domain =
-        "its expression has no value there (0/0, as w/abs(w) at rest), or reads an angle more than 175 "
-        "degrees from its start";
-    for (const Expression& one : expressions)
-        if (const std::string kink = one.kink_by_symbols(); !kink.empty() && !ends_at_bends(p.builder))
-            p.builder.findings().warning(
-                p.section.place("expression"), "expression-kink",
-                p.section.label() + " may jump or bend where the motion decides: " + kink,
-                {"no element ends there but of lobatto and radau, forwards one after the other, so that the "
-                 "estimated error may miss it as well",
-                 "take the family lobatto, or a smooth law such as tanh"});
+    if (!ends_at_bends(p.builder)) warn_of_kinks(p.builder, p.section, "expression", expressions);
     return modulated(p.name, type, parts, places(p.builder));
 }
 

@@ -133,6 +133,8 @@ const Table& root_table()
              "Limits that nothing passes, of joint coordinates and distances, with impacts."}
              .holding(stop_table()),
          Key{"load", types::tables, "Forces, torques, springs and dampers."}.holding(load_table()),
+         Key{"controller", types::tables, "Controllers, filters and motors: states with rates of their own."}
+             .holding(controller_table()),
          Key{"event", types::tables, "Conditions of the motion that are reported, or end it."}.holding(
              event_table()),
          Key{"sensor", types::tables, "Quantities to record: points, joint coordinates, loads, energies."}

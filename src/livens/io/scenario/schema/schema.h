@@ -191,6 +191,7 @@ Table joint_table();
 Table drive_table();
 Table stop_table();
 Table load_table();
+Table controller_table();
 Table event_table();
 Table sensor_table();
 Table point_table();

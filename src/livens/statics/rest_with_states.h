@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rest of mechanisms with controllers: bodies and states are found together (docs/theory.md, "States").
+#pragma once
+
+#include "livens/statics/equilibrium.h"
+#include "livens/statics/rest_search.h"
+
+namespace livens::inline statics_internal {
+
+/// From `here`, where it ends; `iterations` count on.
+Outcome rest_with_states(RestSearch& search, const EquilibriumOptions& options, RestPoint& here,
+                         int& iterations);
+
+}   // namespace livens::inline statics_internal
