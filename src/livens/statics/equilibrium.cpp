@@ -10,15 +10,10 @@
 
 #include "livens/base/text.h"
 #include "livens/dynamics/instant/reactions.h"
-#include "livens/dynamics/rows/projection.h"
-#include "livens/dynamics/rows/rows.h"
-#include "livens/dynamics/rows/twist.h"
 #include "livens/dynamics/start/singular.h"
-#include "livens/multibody/body.h"
-#include "livens/multibody/joint_coordinates.h"
+#include "livens/multibody/unwrapped_angles.h"
 #include "livens/solvers/factors.h"
-#include "livens/solvers/spectral.h"
-#include "livens/statics/statics.h"
+#include "livens/statics/equilibrium_search.h"
 
 namespace livens {
 
@@ -29,168 +24,10 @@ using Values = std::vector<double>;
 constexpr double balance_tolerance = 1e-10;   // residual from which on only Newton's steps polish
 constexpr double largest_step = 0.5;          // lengths of the model, rad
 constexpr double smallest_step = 1e-13;
-constexpr int most_unrestored = 25;   // steps in a row that nothing opposes
-
-/// One configuration at rest. Of those that are searched from also the principal stiffnesses.
-struct RestPoint {
-    std::vector<Matrix34> X;
-    std::vector<double> maps;
-    std::unique_ptr<const Statics> statics;
-    DenseMatrix directions;   // scaled twists by the coordinates of principal stiffness
-    Values stiffness;         // principal ones, ascending
-    DenseMatrix skew;         // of the tangent, in these coordinates; empty where it has none
-    Values forces;            // along them
-    double scale = 0;         // Statics::largest_stiffness
-
-    double residual() const { return statics->residual; }
-};
-
-class Search {
-public:
-    Search(const Model& model, const ConsistentStart& closed)
-        : model_(model), tables_(model, closed.independent), instant_(tables_), rows_(all_rows(model)),
-          t_(closed.start.t)
-    {
-        state_.resize(tables_);
-        state_.angles = tables_.loads.turns.begin(closed.start);
-        const std::vector<Matrix34> stated = model.start().X;
-        for (const Joint& joint : model.joints())
-            for (const NamedCoordinate& q : joint.coordinates) {
-                const double value = coordinate_value(q.coordinate, stated);
-                counted_.push_back({&q, value, value});
-            }
-    }
-
-    const ModelTables& tables() const { return tables_; }
-
-    /// Forces in this configuration; false if they are no numbers or a free motion has no inertia.
-    bool look(std::vector<Matrix34> X, RestPoint& point)
-    {
-        point.X = std::move(X);
-        state_.t = t_;
-        std::copy_n(point.X.data()->data(), state_.X.size(), state_.X.begin());
-        std::fill(state_.velocity.begin(), state_.velocity.end(), 0.0);
-        tables_.loads.turns.follow(point.X, state_.angles);
-        follow_joints(point.X);
-        if (!instant_.prepare(state_, tables_.independent)) return false;
-        instant_.accelerate(state_, Side::right);
-        acceleration_ = state_.acceleration[1];
-        instant_.add_basis(state_);
-        point.maps = state_.maps;
-        point.statics = std::make_unique<const Statics>(tables_, state_, Side::right);
-        return std::isfinite(point.residual());
-    }
-
-    /// Coordinates of each joint where it looked last, with the turns on the way there.
-    std::vector<std::vector<double>> coordinates() const
-    {
-        std::vector<std::vector<double>> all(model_.joints().size());
-        auto next = counted_.begin();
-        for (std::size_t j = 0; j < all.size(); ++j)
-            for (const NamedCoordinate& q : model_.joints()[j].coordinates)
-                all[j].push_back(q.at_stated + next->value - next->stated), ++next;
-        return all;
-    }
-
-    /// Principal stiffnesses, at the configuration that was looked at last.
-    void add_stiffness(RestPoint& point) const
-    {
-        const Statics& statics = *point.statics;
-        if (statics.free.n == 0) return;
-        const DenseMatrix K = statics.free.reduced(tables_, statics.stiffness);
-        const SymmetricSpectrum principal = symmetric_spectrum(symmetric_part(K));
-        point.scale = statics.largest_stiffness;
-        point.stiffness = principal.values;
-        point.directions = product(statics.free.Z, principal.vectors);
-        point.forces = transposed_product(point.directions, statics.rows);
-        const DenseMatrix skew = skew_part(K);
-        point.skew = {};
-        if (largest_size(skew.a) > 1e-13 * point.scale)
-            point.skew = product(transposed_product(principal.vectors, skew), principal.vectors);
-    }
-
-    /// Largest displacement of a body, in lengths of the model, or turn.
-    double size_of(const RestPoint& point, const Values& step) const
-    {
-        const Values y = product(point.directions, step);
-        Values xi(static_cast<std::size_t>(tables_.n_twists));
-        tables_.bodies.to_twist(point.maps.data(), y.data(), xi.data());
-        return largest_displacement(tables_, xi.data());
-    }
-
-    /// Where a step leads to, joints closed. False if they do not close.
-    bool move(const RestPoint& from, const Values& step, std::vector<Matrix34>& X) const
-    {
-        const Values y = product(from.directions, step);
-        Values xi(static_cast<std::size_t>(tables_.n_twists));
-        tables_.bodies.to_twist(from.maps.data(), y.data(), xi.data());
-        X = from.X;
-        for (int b = 0; b < tables_.n_bodies(); ++b) {
-            const double* v = xi.data() + tables_.bodies[b].first;
-            const Vector3 shift{v[0], v[1], v[2]};
-            if (tables_.bodies[b].dofs == 3) {
-                X[b].set_column(0, X[b].column(0) + shift);
-                continue;
-            }
-            X[b] = twist::moved(X[b], shift, {v[3], v[4], v[5]});
-            const Matrix3 D = directors(X[b]);   // rounding does not gather
-            X[b] = configuration(X[b].column(0), 0.5 * (D * (3.0 * identity<3>() - transpose(D) * D)));
-        }
-        Closing closing = close_rows(model_, X, rows_, false);
-        X = std::move(closing.X);
-        return closing.closed;
-    }
-
-    /// Work of weight and loads on the straight way between two configurations, by the trapezoidal rule:
-    /// exact for weight and for forces that are constant or linear in X. What is small is the difference of
-    /// large numbers there, and taken from what joints leave free.
-    double work(const RestPoint& from, const RestPoint& to, const Values& step, double size) const
-    {
-        if (size < 1e-3) {
-            Values both = from.statics->rows;
-            add_scaled(both, 1, to.statics->rows);
-            return 0.5 * dot(product(from.directions, step), both);
-        }
-        double sum = 0;
-        for (std::size_t b = 0; b < from.X.size(); ++b)
-            for (int i = 0; i < 12; ++i)
-                sum += 0.5 * (from.statics->given[12 * b + i] + to.statics->given[12 * b + i]) *
-                       (to.X[b].a[i] - from.X[b].a[i]);
-        return sum;
-    }
-
-    /// The state that was looked at last.
-    const InstantState& state() const { return state_; }
-    const std::vector<double>& acceleration() const { return acceleration_; }
-    int bad_load(const std::vector<Matrix34>& X) const
-    {
-        const std::vector<double> V(12 * X.size(), 0.0);
-        return tables_.loads.bad({t_, Side::right}, X.data()->data(), V.data(), state_.angles);
-    }
-
-private:
-    struct Counted {
-        const NamedCoordinate* q;
-        double stated, value;
-    };
-    /// Each angle the shorter way.
-    void follow_joints(std::span<const Matrix34> X)
-    {
-        for (Counted& one : counted_) {
-            const double x = coordinate_value(one.q->coordinate, X);
-            one.value = one.q->coordinate.counts_turns() ? turned_to(x, one.value) : x;
-        }
-    }
-
-    const Model& model_;
-    ModelTables tables_;
-    InstantSystem instant_;
-    InstantState state_;
-    std::vector<int> rows_;
-    std::vector<double> acceleration_;
-    std::vector<Counted> counted_;   // of all joints
-    double t_;
-};
+constexpr int most_unrestored = 25;    // steps in a row that nothing opposes
+constexpr int most_on_the_way = 400;   // of them where a stop may lie ahead
+constexpr double passed = 1e-12;       // of the scale of a stop's row: rounding passes nothing
+constexpr double no_way = 1e-9;        // of a step
 
 /// Coordinates that nothing restores, and in which nothing pulls: they stay.
 bool is_idle(const RestPoint& point, std::size_t i)
@@ -266,36 +103,92 @@ bool is_unrestored(const RestPoint& point)
     return unrestored > 0.25 * squared_norm(point.forces);
 }
 
-enum class Outcome { balanced, no_numbers, unrestored, stuck, limit, cancelled };
+enum class Outcome { balanced, met_stop, no_numbers, unrestored, stuck, limit, cancelled };
 
-/// Down the work of the forces to where they are balanced.
-Outcome descend(Search& search, const EquilibriumOptions& options, RestPoint& here, int& iterations)
+Values scaled(double factor, const Values& step)
+{
+    Values all(step.size(), 0.0);
+    add_scaled(all, factor, step);
+    return all;
+}
+
+/// A part of a step, joints closed. False: they do not close, or loads are no numbers.
+bool go(Search& search, const RestPoint& here, const Values& step, double part, RestPoint& there)
+{
+    std::vector<Matrix34> X;
+    return search.move(here, scaled(part, step), X) && search.look(std::move(X), there);
+}
+
+/// How much of a step there is before it passes an open stop, and which; all of it, where it passes none.
+struct FreeWay {
+    double part = 1;
+    int stop = -1;
+};
+
+FreeWay free_way(Search& search, const RestPoint& here, const Values& step)
+{
+    FreeWay way;
+    constexpr int looks = 4;
+    RestPoint there;
+    double low = 0, high = 0;
+    for (int k = 1; k <= looks && way.stop < 0; ++k) {
+        low = std::exchange(high, static_cast<double>(k) / looks);
+        if (!go(search, here, step, high, there)) return way;
+        const Search::Depth deepest = search.deepest();
+        if (deepest.stop < 0) return way;
+        if (deepest.depth > passed) way.stop = deepest.stop;
+    }
+    if (way.stop < 0) return way;
+    while (high - low > 1e-15) {
+        const double middle = 0.5 * (low + high);
+        if (middle <= low || middle >= high) break;
+        const bool is_there = go(search, here, step, middle, there);
+        const Search::Depth deepest = search.deepest();
+        if (is_there && deepest.depth <= passed) {
+            low = middle;
+            if (deepest.depth > -passed) break;
+        } else {
+            high = middle;
+            if (is_there) way.stop = deepest.stop;
+        }
+    }
+    way.part = low;
+    return way;
+}
+
+/// Down the work of the forces to where they are balanced, or a stop is met.
+Outcome descend(Search& search, const EquilibriumOptions& options, RestPoint& here, int& iterations, int& met)
 {
     double radius = largest_step;
     int n_unrestored = 0;
+    const int most = search.deepest().stop < 0 ? most_unrestored : most_on_the_way;
     search.add_stiffness(here);
     while (here.residual() > balance_tolerance) {
         if (options.goes_on && !options.goes_on()) return Outcome::cancelled;
         if (iterations == options.max_iterations) return Outcome::limit;
         if (radius < smallest_step) return Outcome::stuck;
         ++iterations;
-        const Values step = step_within(search, here, radius);
+        Values step = step_within(search, here, radius);
+        const FreeWay way = free_way(search, here, step);
+        met = way.stop;
+        if (met >= 0 && way.part < no_way) return Outcome::met_stop;
+        if (met >= 0) step = scaled(way.part, step);
         const double size = search.size_of(here, step);
         Values restored = step;
         for (std::size_t i = 0; i < step.size(); ++i) restored[i] *= here.stiffness[i];
         const double foretold = dot(step, here.forces) - 0.5 * dot(step, restored);
         RestPoint there;
-        std::vector<Matrix34> X;
-        const bool is_there = search.move(here, step, X) && search.look(std::move(X), there);
-        const double share = is_there ? search.work(here, there, step, size) / foretold : -1;
+        const bool is_there = go(search, here, step, 1, there);
+        const double share = is_there ? Search::work(here, there, step, size) / foretold : -1;
         if (!(share > 0.05)) {
             radius = 0.25 * size;
             continue;
         }
         n_unrestored = is_unrestored(here) ? n_unrestored + 1 : 0;
         here = std::move(there);
+        if (met >= 0) return Outcome::met_stop;
         search.add_stiffness(here);
-        if (n_unrestored == most_unrestored) return Outcome::unrestored;
+        if (n_unrestored == most) return Outcome::unrestored;
         radius = share < 0.25  ? 0.5 * size
                  : share > 0.7 ? std::min(largest_step, 2 * std::max(radius, size))
                                : radius;
@@ -312,7 +205,7 @@ void polish(Search& search, RestPoint& here, int& iterations)
         RestPoint there;
         std::vector<Matrix34> X;
         if (!search.move(here, step, X) || !search.look(std::move(X), there)) return;
-        if (!(there.residual() < 0.5 * here.residual())) return;
+        if (!(there.residual() < 0.5 * here.residual()) || search.deepest().depth > passed) return;
         ++iterations;
         here = std::move(there);
         search.add_stiffness(here);
@@ -354,45 +247,132 @@ void describe_worst(const Search& search, const RestPoint& here, Equilibrium& re
     if (body.dofs == 6) result.angular_acceleration = norm(Vector3{a[3], a[4], a[5]});
 }
 
+/// What holds the bodies, and where they are with that.
+struct Stage {
+    HeldAtRest held;
+    ConsistentStart closed;
+    Search search;
+    RestPoint here{};
+    Outcome outcome = Outcome::no_numbers;
+
+    Stage(const Model& model, const RestingStops& stops, std::vector<int> which, const State& start,
+          StartPolicy policy)
+        : held(model, stops, std::move(which)), closed(consistent_start(held.part.model, start, policy)),
+          search(held, closed)
+    {}
+    /// Down to rest, or to a stop: its number, else -1.
+    int run(const EquilibriumOptions& options, int& iterations)
+    {
+        int met = -1;
+        if (search.look(closed.start.X, here)) outcome = descend(search, options, here, iterations, met);
+        if (outcome == Outcome::stuck && here.residual() <= equilibrium_tolerance)
+            outcome = Outcome::balanced;
+        if (outcome == Outcome::balanced) polish(search, here, iterations);
+        if (outcome != Outcome::no_numbers) search.look(std::vector<Matrix34>(here.X), here);
+        return met;
+    }
+    Pushes pushes() const
+    {
+        return held.stops->pushes(held.part, held.closed, here.X, search.state().multipliers[1],
+                                  search.tables().independent, here.statics->given);
+    }
+};
+
+/// One stop after the other closes where it is met, and opens where it would have to pull.
+std::unique_ptr<Stage> search_with_stops(const Model& model, const RestingStops& stops, const State& start,
+                                         const EquilibriumOptions& options, Equilibrium& result)
+{
+    auto now = std::make_unique<Stage>(model, stops, std::vector<int>{}, start, options.initial);
+    result.notes = now->closed.notes;
+    if (stops.size() > 0) refuse_beyond_stops(stops, stops.depths_near(now->closed.start.X));
+    const int most = 50 + 10 * stops.size();
+    for (int changes = 0;; ++changes) {
+        const int met = now->run(options, result.iterations);
+        std::vector<int> closed = now->held.closed;
+        if (now->outcome == Outcome::met_stop) {
+            closed.push_back(met);
+        } else {
+            if (now->outcome != Outcome::balanced || closed.empty()) return now;
+            const int release = RestingStops::to_release(now->pushes());
+            if (release < 0) return now;
+            closed.erase(closed.begin() + release);
+        }
+        if (changes == most) {
+            now->outcome = Outcome::limit;
+            result.message = "which stops hold the bodies is not found in " + std::to_string(most) +
+                             " changes of them: start nearer to the equilibrium";
+            return now;
+        }
+        State at = now->closed.start;
+        at.X = now->here.X;
+        auto next = std::make_unique<Stage>(model, stops, std::move(closed), at, StartPolicy::project);
+        next->search.goes_on_from(now->search);
+        now = std::move(next);
+    }
+}
+
+/// From joints and rows of a part to those of the whole: what does not act has no force.
+void add_reactions(const Stage& stage, Equilibrium& result)
+{
+    const HeldAtRest& held = stage.held;
+    const UniqueReactions least =
+        least_reactions(held.part.model, stage.here.X, stage.search.state().multipliers[1],
+                        stage.search.tables().independent);
+    result.multipliers.assign(static_cast<std::size_t>(held.whole->n_rows()), 0.0);
+    result.joint_is_unique.assign(held.whole->joints().size(), true);
+    result.shared.assign(held.whole->joints().size(), {});
+    for (std::size_t r = 0; r < held.part.rows.size(); ++r)
+        result.multipliers[static_cast<std::size_t>(held.part.rows[r])] = least.multipliers[r];
+    for (std::size_t j = 0; j < held.part.joints.size(); ++j) {
+        const auto whole = static_cast<std::size_t>(held.part.joints[j]);
+        result.joint_is_unique[whole] = least.joint_is_unique[j];
+        result.shared[whole] = least.shared[j];
+    }
+}
+
 }   // namespace
 
 Equilibrium find_equilibrium(const Model& the_model, const State& start, const EquilibriumOptions& options)
 {
     const Model model = frozen(the_model, {start.t});
+    const RestingStops stops(model, start.t);
     State at_rest = start;
     for (Matrix34& V : at_rest.V) V = {};
-    const ConsistentStart closed = consistent_start(model, at_rest, options.initial);
 
     Equilibrium result;
-    result.state = closed.start;
-    result.degrees_of_freedom = closed.degrees_of_freedom;
-    result.notes = closed.notes;
     if (model.n_bodies() == 0) {
+        const ConsistentStart closed = consistent_start(model, at_rest, options.initial);
+        result.state = closed.start;
+        result.degrees_of_freedom = closed.degrees_of_freedom;
+        result.notes = closed.notes;
         result.is_found = true;
         return result;
     }
-    Search search(model, closed);
-    RestPoint here;
-    Outcome outcome = Outcome::no_numbers;
-    if (search.look(closed.start.X, here)) outcome = descend(search, options, here, result.iterations);
-    if (outcome == Outcome::stuck && here.residual() <= equilibrium_tolerance) outcome = Outcome::balanced;
-    if (outcome == Outcome::balanced) polish(search, here, result.iterations);
-    if (outcome != Outcome::no_numbers) search.look(std::vector<Matrix34>(here.X), here);
-    describe_worst(search, here, result);
-    result.state.X = here.X;
-    result.state.angles = search.state().angles;
+    const std::unique_ptr<Stage> stage = search_with_stops(model, stops, at_rest, options, result);
+    const Search& search = stage->search;
+    result.state = stage->closed.start;
+    result.degrees_of_freedom = stage->closed.degrees_of_freedom;
+    describe_worst(search, stage->here, result);
+    result.state.X = stage->here.X;
+    // without what counts turns of stops
+    result.state.angles.assign(search.state().angles.begin(),
+                               search.state().angles.begin() +
+                                   static_cast<std::ptrdiff_t>(std::min(search.state().angles.size(),
+                                                                        UnwrappedAngles(model).size())));
     result.coordinates = search.coordinates();
-    result.is_found = outcome == Outcome::balanced;
-    const UniqueReactions least =
-        least_reactions(model, here.X, search.state().multipliers[1], search.tables().independent);
-    result.multipliers = least.multipliers;
-    result.joint_is_unique = least.joint_is_unique;
-    result.shared = least.shared;
+    result.is_found = stage->outcome == Outcome::balanced;
+    for (const int k : stage->held.closed)
+        result.closed_stops.push_back(static_cast<int>(stops.joint_index(k)));
+    add_reactions(*stage, result);
     if (!result.is_found) {
-        result.message = why_not(model, search, here, outcome, result);
+        if (result.message.empty())
+            result.message = why_not(model, search, stage->here, stage->outcome, result);
         return result;
     }
-    refuse_singular_start(model, consistent_start(model, result.state, StartPolicy::project));
+    State place = result.state;
+    place.angles.clear();
+    refuse_singular_start(search.model(), consistent_start(search.model(), place, StartPolicy::project));
+    if (stops.size() > 0) refuse_beyond_stops(stops, search.depths());
     result.stability = stability(linearise(model, result.state));
     return result;
 }

@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "livens/spacetime/solve.h"
-#include "livens/statics/equilibrium.h"
 #include "unit/io/swinging_rod.h"
 
 namespace livens {
@@ -345,22 +344,6 @@ accuracy = 1e-11
     EXPECT_NEAR(s.solution.events[0].t, 0.25, 1e-13);
     const State end = s.solution.motion.at_end(s.solution.motion.n_elements());
     for (const Matrix34& V : end.V) EXPECT_NEAR(V(0, 0), 0.5, 1e-13);
-}
-
-/// A search that does not know them would come to rest beyond one.
-TEST(Stops, AreNoPlaceBehindWhichThingsRest)
-{
-    std::string text = pendulum("end = 1\nelements = 10");
-    text.replace(text.find("\"0 deg\""), 7, "-0.2");
-    const ScenarioResult result = read(text);
-    ASSERT_TRUE(result.scenario) << shown(result);
-    try {
-        find_equilibrium(result.scenario->model, result.scenario->conditions.start);
-        FAIL() << "it rests beyond its stop";
-    } catch (const InputError& error) {
-        EXPECT_EQ(error.complaint().code, "event-method");
-        EXPECT_EQ(error.complaint().path, "joint[buffer]");
-    }
 }
 
 /// Two balls on guides of their own, and one with two floors.

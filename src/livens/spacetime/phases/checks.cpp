@@ -64,9 +64,8 @@ void check_decided(const Model& model, const Problem& problem, const Method& met
     };
     const Conditions& given = problem.conditions;
     refuse(!is_nodal(method), name_of(method), "only elements of lobatto and radau end where events are",
-           is_stop
-               ? "use the family lobatto or radau; limits of a joint are springs with limit_law = \"penalty\""
-               : "use the family lobatto or radau");
+           is_stop ? "use the family lobatto or radau; limits of a joint may be springs"
+                   : "use the family lobatto or radau");
     refuse(!given.has_state() || given.at_start != Known::state || !problem.unknowns.is_empty(), "",
            "it is decided on the way from a state at the start",
            "give the state at the start, and no unknowns");
