@@ -2,6 +2,7 @@
 // livens equilibrium: where a mechanism rests.
 #include "livens/statics/equilibrium.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -42,6 +43,12 @@ struct Found {
     {
         return model().bodies()[b].is_point ? Vector3{} : turn_between(model().bodies()[b].X, at.state.X[b]);
     }
+    bool is_stop(int j) const
+    {
+        const Joint& joint = model().joints()[static_cast<std::size_t>(j)];
+        return joint.impact && joint.impact->open_side != 0;
+    }
+    bool is_closed(int j) const { return std::ranges::find(at.closed_stops, j) != at.closed_stops.end(); }
     Reaction reaction(int j) const { return joint_reaction(now, j, at.state.X, at.multipliers); }
 };
 
@@ -77,6 +84,7 @@ void add_joints(JsonWriter& json, const Found& found)
             json.member(joint.coordinates[k].name, found.at.coordinates[j][k]);
         json.key("force").value(numbers(reaction.force));
         json.key("torque").value(numbers(reaction.torque));
+        if (found.is_stop(j)) json.member("closed", found.is_closed(j));
         json.member("unique", static_cast<bool>(found.at.joint_is_unique[j]));
         json.member("shared", in_words(found.at.shared[j])).end_object();
     }
@@ -126,6 +134,10 @@ std::string words_of_joint(const Found& found, int j)
                             shown(found.at.coordinates[j][k], is_angle ? 1 : found.model().length()),
                             is_angle ? "rad" : "m");
     }
+    if (found.is_stop(j)) {
+        if (!found.is_closed(j)) return "open";
+        text = "closed, ";
+    }
     const Reaction reaction = found.reaction(j);
     const double force = norm(reaction.force), torque = norm(reaction.torque),
                  size = std::max(force, torque / found.model().length());
@@ -167,7 +179,7 @@ std::string text_of(const Found& found, const std::string& file)
 int equilibrium_command(const std::string& file, const Common& common)
 {
     std::vector<Diagnostic> warnings;
-    const Scenario scenario = as_it_starts(load_scenario(file, common, &warnings));
+    const Scenario scenario = as_it_rests(load_scenario(file, common, &warnings));
     const InterruptWatch watch;
     const Equilibrium at = equilibrium_of(scenario);
     const int signal = InterruptWatch::signal();

@@ -181,7 +181,7 @@ Linearisation linear_at_rest(const Scenario& scenario, bool is_start)
 int modes_command(const ModesArguments& arguments, const Common& common)
 {
     std::vector<Diagnostic> warnings;
-    const Scenario scenario = as_it_starts(load_scenario(arguments.scenario, common, &warnings));
+    const Scenario scenario = as_it_rests(load_scenario(arguments.scenario, common, &warnings));
     Rest rest{scenario, arguments.at, {}, {}, {}, {}};
     rest.linear = linear_at_rest(scenario, arguments.at == "start");
     rest.stability = stability(rest.linear);

@@ -34,8 +34,8 @@ def from_urdf(file: str | os.PathLike[str], *, at: Mapping[str, float | str] | N
         packages: Where ``package://NAME/..`` is: ``{"ur_description": "/opt/ur_description"}``.
         meshes: Whether visuals are drawn: boxes, cylinders, spheres, and meshes (STL, OBJ, PLY, DAE, MSH) that lie at or
             below the file's folder or in a stated package.
-        limits: What becomes of limits of joints: ``"stop"`` makes them ``limits`` of the joints, springs that act beyond
-            them; limits beyond which a joint begins are listed instead.
+        limits: What becomes of limits of joints: ``"stop"`` makes them ``limits`` of the joints, by ``limit_law="penalty"`` springs that
+            act beyond them; limits beyond which a joint begins are listed instead.
         inertias: What becomes of inertias that belong to no body: mended by the least change, or an error.
         loops: Pairs of links that the file leaves apart, and how their frames are held together:
             ``("left", "right", "weld")``, ``"spherical"`` (by their origins) or ``"revolute"`` (about their z axes).

@@ -45,8 +45,8 @@ def from_mjcf(file: Any, *, keyframe: int | str | None = None, qpos: Vector | No
         rates: Likewise, rad/s or m/s.
         control: Controls of actuators: numbers, or formulas of the time: ``{"hip": "0.4*sin(6*t)"}``. Others: those of
             the keyframe, else 0.
-        limits: What becomes of limits of joints: ``"stop"`` makes them ``limits`` of the joints, springs that act beyond
-            them; limits beyond which a joint begins are listed instead.
+        limits: What becomes of limits of joints: ``"stop"`` makes them ``limits`` of the joints, by ``limit_law="penalty"`` springs that
+            act beyond them; limits beyond which a joint begins are listed instead.
         meshes: Folder into which meshes that are drawn are written, as STL; the model and its scenario file belong there.
             Default: meshes are not drawn.
         strict: Whether what is lost and changes the motion (contacts, friction, muscles, spatial tendons) is an error.

@@ -107,7 +107,7 @@ def _add_limits(p: Parts, j: int, table: Table) -> None:
         p.losses.add(_LIMITS_AT_START, name)
     if any(math.isfinite(x) for x in kept):
         p.losses.add(_SOFT_LIMITS, name)
-        table["limits"] = kept
+        table["limits"], table["limit_law"] = kept, "penalty"
 
 
 def _add_ball_limit(p: Parts, j: int, table: Table) -> None:

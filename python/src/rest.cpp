@@ -144,7 +144,7 @@ nb::dict found(const Model& model, const Equilibrium& at)
 
 nb::dict equilibrium(const Shared& given)
 {
-    const Scenario scenario = as_it_starts(*given);
+    const Scenario scenario = as_it_rests(*given);
     const Equilibrium at =
         unlocked([&](const std::function<bool()>& goes_on) { return equilibrium_of(scenario, goes_on); });
     return found(scenario.model, at);
@@ -161,7 +161,7 @@ struct Linear {
 /// (linear or None, equilibrium or None): None and what was found where there is no equilibrium.
 nb::tuple linearised(const Shared& given, bool at_start)
 {
-    const Scenario scenario = as_it_starts(*given);
+    const Scenario scenario = as_it_rests(*given);
     Equilibrium rest;
     const auto linear = unlocked([&](const std::function<bool()>& goes_on) {
         std::shared_ptr<Linear> made;

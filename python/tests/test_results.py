@@ -346,7 +346,7 @@ def test_what_acts_along_a_coordinate_is_its_effort() -> None:
     m = lv.Model("arm", gravity=(0, 0, -9.81))
     arm = m.add_body("arm", lv.box(1, 0.1, 0.1, mass=2), position=(0.5, 0, 0))
     m.add_revolute("hinge", "world", arm, at=(0, 0, 0), axis=(0, 1, 0), damping=0.3, stiffness="4 N m/rad", rest="10 deg",
-                   limits=(-np.inf, "40 deg"))
+                   limits=(-np.inf, "40 deg"), limit_law="penalty")
     wheel = m.add_body("wheel", lv.cylinder(0.1, 0.02, mass=1), position=(0, 2, 0))
     m.add_cylindrical("pipe", "world", wheel, at=(0, 2, 0), axis=(0, 0, 1), angle={"damping": 0.1},
                       displacement={"stiffness": 100})

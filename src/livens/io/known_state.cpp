@@ -12,6 +12,24 @@ Scenario as_it_starts(Scenario scenario)
     return scenario;
 }
 
+Scenario as_it_rests(Scenario scenario)
+{
+    const Model whole = scenario.model;
+    if (!whole.has_events()) return scenario;
+    scenario = as_it_starts(std::move(scenario));
+    for (int j = 0; j < static_cast<int>(whole.joints().size()); ++j) {
+        const Joint& joint = whole.joints()[static_cast<std::size_t>(j)];
+        if (!joint.impact || joint.impact->open_side == 0) continue;
+        const int now = scenario.model.add_joint(joint);
+        for (Event event : whole.events()) {
+            if (event.action.joint != j || event.action.does != EventAction::Does::begin) continue;
+            event.action.joint = now;
+            scenario.model.add_event(std::move(event));
+        }
+    }
+    return scenario;
+}
+
 KnownState known_state(const Scenario& scenario)
 {
     const Conditions& b = scenario.conditions;

@@ -13,8 +13,10 @@ struct KnownState {
 
 /// With the joints alone that act at the start of time.
 Scenario as_it_starts(Scenario scenario);
+/// The same with stops, which hold where bodies lean on them.
+Scenario as_it_rests(Scenario scenario);
 
 /// At the start, else at the end; where positions are guesses everywhere, those at the start.
 KnownState known_state(const Scenario& scenario);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

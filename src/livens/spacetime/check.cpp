@@ -71,7 +71,7 @@ void refuse_free_bodies(const Model& model)
 /// node.
 void refuse_special_rows(const Model& model, const Method& method)
 {
-    if (is_nodal(method)) return;
+    if (is_nodal(method) || !model.events().empty()) return;   // check_events() tells
     const std::string name = std::holds_alternative<Mixed>(method) ? "mixed" : name_of(method);
     if (model.has_drives())
         throw InputError({"drives-method", "method.family", "the method " + name + " cannot follow drives",

@@ -33,6 +33,7 @@ struct Equilibrium {
     std::vector<SharedComponents> shared;           ///< of each joint that is not
     std::vector<std::vector<double>> coordinates;   ///< of each joint, as it counts them: turns included
     std::vector<std::string> notes;                 ///< of consistent_start()
+    std::vector<int> closed_stops;                  ///< joints that push one way alone, and do so
     StabilityReport stability;                      ///< where it was found
 };
 
@@ -47,6 +48,11 @@ struct Equilibrium {
 /// one that is balanced at the start to 1e-10 is returned, whatever its stability. In the end steps are
 /// Newton's alone until the residual does not fall any more.
 ///
+/// Stops (joints with ImpactLaw::open_side that an event closes) hold where they are met, and no more where
+/// they would have to pull; no step passes one. What is found pushes at each that is closed, and is beyond
+/// none. Throws InputError `stop-violated` for a start beyond one, `event-method` for a rest that touches one
+/// without a force; after 50 changes, and 10 for each stop, it is not found.
+///
 /// Stiff springs that carry what moves far want short steps: about (k L / m g)^(1/3) of them.
 ///
 /// Not found: loads that are no number, a limit of iterations, or 25 steps in a row along directions that
@@ -54,4 +60,4 @@ struct Equilibrium {
 /// `start-singular` where the joints hold less at the rest than beside it.
 Equilibrium find_equilibrium(const Model& model, const State& start, const EquilibriumOptions& options = {});
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

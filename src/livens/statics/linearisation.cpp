@@ -9,12 +9,12 @@
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
-#include "livens/dynamics/instant/impact.h"
 #include "livens/multibody/body.h"
 #include "livens/multibody/controllers.h"
 #include "livens/multibody/rotors.h"
 #include "livens/solvers/factors.h"
 #include "livens/solvers/spectral.h"
+#include "livens/statics/resting_stops.h"
 #include "livens/statics/statics.h"
 
 namespace livens {
@@ -27,23 +27,6 @@ constexpr double rest_tolerance = 1e-9;       // lengths of the model a second, 
 constexpr double rounding_of_terms = 1e-12;   // of the largest of them, where they cancel
 
 Values by_rows(const DenseMatrix& A) { return transpose(A).a; }
-
-/// Rest beyond a stop is none, and what is at one moves to one side alone.
-void refuse_stops(const Model& model, const State& state)
-{
-    constexpr double touched = 1e-9;   // of the scale of its row
-    for (const Joint& joint : model.joints()) {
-        if (!joint.impact || joint.impact->open_side == 0) continue;
-        const double gap = gap_of(joint, state) / joint.rows[0].scale;
-        const bool is_far = !joint.branches.empty() &&   // of an angle, whose row is alike half a turn on
-                            constraint_value(joint.branches[0], {state.t}, state.X) < 0;
-        if (is_far || gap > touched) continue;
-        throw InputError({"event-method", "joint[" + joint.name + "]",
-                          std::string("this rest is ") + (gap < -touched ? "beyond" : "at") + " stop '" +
-                              joint.name + "', and stops do not take part in equilibria and small motions",
-                          "", "", "", "hold the joint there by a drive, or by its springs ('limits')"});
-    }
-}
 
 void refuse_motion(const Model& model, const State& state)
 {
@@ -153,11 +136,12 @@ LinearStates states_of(const Model& model, const State& state, const StateDirect
 
 Linearisation linearise(const Model& the_model, const State& state, Side side)
 {
-    refuse_motion(the_model, consistent_start(the_model, state, StartPolicy::project).start);
-    refuse_stops(the_model, state);
     refuse_sampling(the_model);
+    const RestingStops stops(the_model, state.t);
+    const Model held = stops.size() == 0 ? the_model : stops.holding(stops_of_rest(stops, state, side)).model;
+    refuse_motion(held, consistent_start(held, state, StartPolicy::project).start);
     // Drives are held where they are at the instant: the equations of a rest have no time.
-    const Model model = frozen(the_model, {state.t, side});
+    const Model model = frozen(held, {state.t, side});
     State rest = state;
     for (std::size_t b = 0; b < rest.V.size(); ++b)
         if (!model.bodies()[b].holds_states()) rest.V[b] = {};

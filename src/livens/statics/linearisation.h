@@ -52,7 +52,10 @@ inline constexpr double equilibrium_tolerance = 1e-8;
 /// Closed as by StartPolicy::project. Where drives would move the mechanism it wants to be frozen(), as it is
 /// where find_equilibrium() found it. Throws InputError, see consistent_start(), and
 ///   `not-at-rest`         velocities, of drives too, above 1e-9 lengths of the model a second or 1e-9 rad/s
-///   `not-in-equilibrium`  forces that are not balanced to equilibrium_tolerance; the body is named
+///   `not-in-equilibrium`  forces that are not balanced to equilibrium_tolerance; the body is named; a stop
+///                         that would have to pull
+///   `event-method`        a stop that is touched without a force
+/// Stops that push are rows.
 Linearisation linearise(const Model& model, const State& state, Side side = Side::right);
 
 /// How a body goes in a mode, world axes: complex, since parts may lag behind each other.
@@ -111,4 +114,4 @@ struct StateMatrices {
 StateMatrices state_matrices(const Model& model, const Linearisation& linear,
                              const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -12,11 +12,13 @@ namespace livens::inline statics_internal {
 
 namespace {
 
+using Values = std::vector<double>;
+
 /// Newton's method for bodies and states together, whose stiffness is no question of energy: steps are kept
 /// where the next one by the same tangent is shorter.
 class RestWithStates {
 public:
-    RestWithStates(RestSearch& search, const EquilibriumOptions& options) : search_(search), options_(options) {}
+    RestWithStates(Search& search, const EquilibriumOptions& options) : search_(search), options_(options) {}
 
     Outcome run(RestPoint& here, int& iterations)
     {
@@ -90,23 +92,23 @@ private:
         Values xi = step.xi;
         for (double& x : xi) x *= share;
         to = {};
-        to.held = from.held;
+        to.states = from.states;
         for (int b = 0; b < search_.tables().n_bodies(); ++b)
             for (int k = 0; search_.holds_states(b) && k < 3; ++k) {
                 const auto at = static_cast<std::size_t>(search_.tables().bodies[b].first + k);
-                to.held[at] += xi[at];
+                to.states[at] += xi[at];
             }
         std::vector<Matrix34> X;
         return search_.move_by(from, xi, X) && search_.look(std::move(X), to);
     }
 
-    RestSearch& search_;
+    Search& search_;
     const EquilibriumOptions& options_;
 };
 
 }   // namespace
 
-Outcome rest_with_states(RestSearch& search, const EquilibriumOptions& options, RestPoint& here,
+Outcome rest_with_states(Search& search, const EquilibriumOptions& options, RestPoint& here,
                          int& iterations)
 {
     return RestWithStates(search, options).run(here, iterations);

@@ -3,12 +3,12 @@
 #pragma once
 
 #include "livens/statics/equilibrium.h"
-#include "livens/statics/rest_search.h"
+#include "livens/statics/equilibrium_search.h"
 
 namespace livens::inline statics_internal {
 
 /// From `here`, where it ends; `iterations` count on.
-Outcome rest_with_states(RestSearch& search, const EquilibriumOptions& options, RestPoint& here,
+Outcome rest_with_states(Search& search, const EquilibriumOptions& options, RestPoint& here,
                          int& iterations);
 
 }   // namespace livens::inline statics_internal

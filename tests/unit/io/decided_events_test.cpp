@@ -3,9 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "livens/io/solve_scenario.h"
 #include "livens/spacetime/solve.h"
-#include "unit/io/scenario_text.h"
+#include "unit/io/swinging_rod.h"
 
 namespace livens {
 
@@ -13,50 +12,18 @@ namespace {
 
 using test::find;
 using test::read;
+using test::scenario_of;
 using test::shown;
+using test::solved;
 
-Scenario scenario_of(const std::string& text)
-{
-    ScenarioResult result = read(text);
-    EXPECT_TRUE(result.scenario.has_value() && result.diagnostics.empty()) << text << shown(result);
-    return result.scenario ? std::move(*result.scenario) : Scenario();
-}
-
-SolvedScenario solved(const std::string& text)
-{
-    const Scenario scenario = scenario_of(text);
-    return solve_scenario(scenario, scenario.options, scenario.prepared);
-}
-
-/// A rod of 1 m that swings about an end, let go 0.5 rad from where it hangs.
+/// Let go 0.5 rad from where it hangs.
 std::string pendulum(const std::string& time, const std::string& more = "")
 {
-    return R"(format = 1
-gravity = [0, 0, -9.81]
-body = [{ name = "rod", shape = { box = [0.05, 0.05, 1] }, mass = 2, position = [0, 0, -0.5] }]
-
-[[joint]]
-name = "pin"
-type = "revolute"
-between = ["world", "rod"]
-at = [0, 0, 0]
-axis = [0, 1, 0]
-
-[start]
-coordinates = [{ joint = "pin", value = -0.5 }]
-
-[time]
-)" + time + "\n" +
-           more;
+    return test::SwingingRod{-0.5}.text(time, more);
 }
 
 /// From rest at 0.5 rad to where it hangs.
-double quarter_period()
-{
-    const double about_pin = 2 * ((1 + 0.05 * 0.05) / 12 + 0.25),
-                 rate = std::sqrt(2 * 9.81 * 0.5 / about_pin);
-    return std::comp_ellint_1(std::sin(0.25)) / rate;
-}
+double quarter_period() { return std::comp_ellint_1(std::sin(0.25)) / test::SwingingRod::frequency(); }
 
 TEST(DecidedEvents, EndTheMotionWhereACoordinateIs)
 {

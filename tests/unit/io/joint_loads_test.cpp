@@ -185,7 +185,7 @@ TEST(JointLimits, NeverPullAndStoreWhatTheyTake)
 TEST(JointLimits, HaveTheirSpringsFromTheBodies)
 {
     // 0.6 + 2 * 0.3^2 about the axis; the length of the model is that of Model::length().
-    const Model model = model_of(held("revolute", "limits = [-1, 1]"));
+    const Model model = model_of(held("revolute", "limits = [-1, 1]\nlimit_law = \"penalty\""));
     const double T = std::sqrt(model.length() / 9.81), w = std::acos(-1.0) / (0.03 * T);
     State at = model.start();
     at.X[0] = configuration({}, directors_from_rotation_vector({0, -1.01, 0}));
@@ -207,7 +207,7 @@ TEST(JointLimits, HaveTheirSpringsFromTheBodies)
                "\n[[joint]]\ntype = \"weld\"\nbetween = [\"c\", \"b\"]\n"
                "at = [1.5, 0, 0]\n[time]\nend = 1\nelements = 4\n";
     };
-    const Model two = model_of(chain("limits = [-1, 1]"));
+    const Model two = model_of(chain("limits = [-1, 1]\nlimit_law = \"penalty\""));
     const double m = 1, l1 = 1, l2 = 0.5, J1 = 3 + m * l1 * l1, J2 = 2.5 + m * l2 * l2, J12 = m * l1 * l2,
                  reduced = (J1 * J2 - J12 * J12) / (J1 + J2 + 2 * J12),
                  frequency = std::acos(-1.0) / (0.03 * 0.3);   // there is no gravity
@@ -248,13 +248,23 @@ std::vector<test::Case> test::cases_of_joint_loads()
         {"joint-loads", one("limit_damping = 1"), "1\n\n[time]"},
         {"joint-loads", one("damping = 1\nuntil = 0.5"), "[[joint]]"},
         {"joint-limits", one("limits = [1, -1]"), "[1, -1]"},
-        {"joint-limits", one("limits = [0.5, 1]"), "[0.5, 1]"},
+        {"joint-limits", one("limits = [0.5, 1]\nlimit_law = \"penalty\""), "[0.5, 1]"},
+        {"stop-violated", one("limits = [0.5, 1]"), "\"j\""},
+        {"joint-loads", one("limit_law = \"rigid\""), "\"rigid\""},
+        {"joint-loads", one("limits = [-1, 1]\nlimit_law = \"rigid\"\nlimit_stiffness = 3"), "3\n\n[time]"},
+        {"joint-loads", one("limits = [-1, 1]\nlimit_damping = 1\nlimit_restitution = 0.3"), "0.3\n\n[time]"},
+        {"joint-loads", one("limits = [-1, 1]\nuntil = 0.5"), "[[joint]]"},
+        {"out-of-range", one("limits = [-1, 1]\nlimit_restitution = 1.1"), "1.1\n\n[time]"},
+        {"event-method", one("limits = [-1, 1]\n[method]\nfamily = \"midpoint\""), "\"j\""},
+        {"event-method", one("limits = [-1, 1]\n[method]\nfamily = \"mixed\""), "\"j\""},
+        {"name-duplicate",
+         one("limits = [-1, 1]\n[[stop]]\nname = \"j.low\"\njoint = \"j\"\nlimits = [-2, inf]"), "\"j.low\""},
         {"joint-limits",
          one("limits = [-1, 1]\n[[body]]\nname = \"p\"\nmass = 0.1\nshape = { point = true }\nposition = [0, "
              "1, 0]\n"
              "[[joint]]\nname = \"k\"\ntype = \"point_on_line\"\nbetween = [\"world\", \"p\"]\nat = [0, 1, "
              "0]\n"
-             "axis = [1, 0, 0]\nlimits = [\"1 mm\", 1]"),
+             "axis = [1, 0, 0]\nlimit_law = \"penalty\"\nlimits = [\"1 mm\", 1]"),
          "[\"1 mm\", 1]"},
         {"unit", one("damping = \"5 N s/m\""), "\"5 N s/m\""},
         {"not-finite", one("limits = [nan, 1]"), "nan"},

@@ -3,34 +3,18 @@
 #include <cmath>
 #include <numbers>
 
-#include "livens/io/solve_scenario.h"
 #include "livens/spacetime/solve.h"
-#include "livens/statics/equilibrium.h"
-#include "unit/io/scenario_text.h"
+#include "unit/io/swinging_rod.h"
 
 namespace livens {
 
 namespace {
 
 using test::find;
+using test::hits_of;
 using test::read;
 using test::shown;
-
-SolvedScenario solved(const std::string& text)
-{
-    ScenarioResult result = read(text);
-    EXPECT_TRUE(result.scenario.has_value() && result.diagnostics.empty()) << text << shown(result);
-    const Scenario scenario = result.scenario ? std::move(*result.scenario) : Scenario();
-    return solve_scenario(scenario, scenario.options, scenario.prepared);
-}
-
-std::vector<SolvedEvent> hits_of(const SolvedScenario& s)
-{
-    std::vector<SolvedEvent> hits;
-    for (const SolvedEvent& one : s.solution.events)
-        if (one.speed > 0) hits.push_back(one);
-    return hits;
-}
+using test::solved;
 
 /// On a guide 1 m above the floor.
 std::string ball(const std::string& stop, const std::string& time)
@@ -104,40 +88,22 @@ TEST(Stops, OfFullRestitutionLoseNothing)
     for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(hits[k].t, (1 + 2 * double(k)) * first, 1e-10);
 }
 
-/// A rod of 1 m and 2 kg about its end, let go at 1 rad, that meets a buffer where it hangs.
+/// Let go at 1 rad; it meets a buffer where it hangs.
 std::string pendulum(const std::string& time, const std::string& more = "")
 {
-    return R"(format = 1
-gravity = [0, 0, -9.81]
-body = [{ name = "rod", shape = { box = [0.05, 0.05, 1] }, mass = 2, position = [0, 0, -0.5] }]
-
-[[joint]]
-name = "pin"
-type = "revolute"
-between = ["world", "rod"]
-at = [0, 0, 0]
-axis = [0, 1, 0]
-
-[start]
-coordinates = [{ joint = "pin", value = -1 }]
-
-[[stop]]
+    return test::SwingingRod{-1}.text(time, R"([[stop]]
 name = "buffer"
 joint = "pin"
 limits = ["-inf", "0 deg"]
 restitution = 0.8
-
-[time]
-)" + time + "\n" +
-           more;
+)" + more);
 }
 
 /// Instants of impacts: a swing from the angle b takes K(sin b/2) / rate to the bottom, and behind an impact
 /// the angle is that whose speed there is e times the one before: sin(b'/2) = e sin(b/2).
 std::vector<double> buffer_hits(int n)
 {
-    const double about_pin = 2 * ((1 + 0.05 * 0.05) / 12 + 0.25),
-                 rate = std::sqrt(2 * 9.81 * 0.5 / about_pin);
+    const double rate = test::SwingingRod::frequency();
     double k = std::sin(0.5), t = std::comp_ellint_1(k) / rate;
     std::vector<double> all{t};
     while (static_cast<int>(all.size()) < n) {
@@ -156,6 +122,26 @@ TEST(Stops, PendulumMeetsABufferWhenEllipticIntegralsSay)
     const std::vector<double> truth = buffer_hits(4);
     ASSERT_GE(hits.size(), 4u);
     for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(hits[k].t, truth[k], 1e-12) << k;
+}
+
+/// The short form, to the bit; springs are something else.
+TEST(Stops, AreWhatLimitsOfAJointMean)
+{
+    const auto of_limits = [](const std::string& keys) {
+        return solved(test::SwingingRod{-1, "limits = [\"-inf\", \"0 deg\"]\n" + keys}.text(
+            "end = 2\naccuracy = 1e-9"));
+    };
+    const SolvedScenario stated = solved(pendulum("end = 2\naccuracy = 1e-9")),
+                         limits = of_limits("limit_restitution = 0.8\n"),
+                         springs = of_limits("limit_law = \"penalty\"\nlimit_damping = 0\n"),
+                         as_before = of_limits("limit_damping = 0\n");
+    ASSERT_TRUE(limits.solution.report.converged()) << limits.solution.report.message;
+    EXPECT_EQ(stated.solution.motion.X.values, limits.solution.motion.X.values);
+    EXPECT_EQ(limits.solution.events.size(), stated.solution.events.size());
+    EXPECT_GE(hits_of(limits).size(), 2u);
+    EXPECT_TRUE(springs.solution.events.empty());
+    EXPECT_EQ(springs.solution.motion.X.values, as_before.solution.motion.X.values);
+    EXPECT_NE(springs.solution.motion.X.values, limits.solution.motion.X.values);
 }
 
 class OrdersOfImpacts : public testing::TestWithParam<int> {};
@@ -358,22 +344,6 @@ accuracy = 1e-11
     EXPECT_NEAR(s.solution.events[0].t, 0.25, 1e-13);
     const State end = s.solution.motion.at_end(s.solution.motion.n_elements());
     for (const Matrix34& V : end.V) EXPECT_NEAR(V(0, 0), 0.5, 1e-13);
-}
-
-/// A search that does not know them would come to rest beyond one.
-TEST(Stops, AreNoPlaceBehindWhichThingsRest)
-{
-    std::string text = pendulum("end = 1\nelements = 10");
-    text.replace(text.find("\"0 deg\""), 7, "-0.2");
-    const ScenarioResult result = read(text);
-    ASSERT_TRUE(result.scenario) << shown(result);
-    try {
-        find_equilibrium(result.scenario->model, result.scenario->conditions.start);
-        FAIL() << "it rests beyond its stop";
-    } catch (const InputError& error) {
-        EXPECT_EQ(error.complaint().code, "event-method");
-        EXPECT_EQ(error.complaint().path, "joint[buffer]");
-    }
 }
 
 /// Two balls on guides of their own, and one with two floors.

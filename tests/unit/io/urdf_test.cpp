@@ -137,7 +137,7 @@ TEST(Urdf, DampingAndLimitsAreThoseOfTheJoint)
 {
     const UrdfResult kept = read_robot(arm());
     ASSERT_TRUE(kept.scenario) << told(kept);
-    EXPECT_NE(kept.toml.find("limits = [-1.0, 1.0]"), std::string::npos) << kept.toml;
+    EXPECT_NE(kept.toml.find("limits = [-1.0, 1.0]\nlimit_law = \"penalty\""), std::string::npos);
     EXPECT_NE(kept.toml.find("damping = 0.5"), std::string::npos) << kept.toml;
     EXPECT_EQ(n_told(kept, "import-lost", "joint limits"), 0);
     // A load for each: of the slide against its rate, of the shoulder beyond 1 rad.

@@ -153,7 +153,8 @@ void UrdfJoints::add_loads(TableMaker& table, const PlacedJoint& placed)
         add_limits(table, *joint.limit, "'" + joint.name + "'", placed.coordinate);
 }
 
-/// A start beyond a limit would be thrown back: such an end is told instead.
+/// A start beyond a limit would be thrown back: such an end is told instead. Springs, as every family of
+/// methods and every command knows them.
 void UrdfJoints::add_limits(TableMaker& table, const UrdfLimit& limit, const std::string& name,
                             double coordinate)
 {
@@ -164,7 +165,9 @@ void UrdfJoints::add_limits(TableMaker& table, const UrdfLimit& limit, const std
     const double low = coordinate >= *limit.lower - slack ? *limit.lower : -infinity;
     const double high = coordinate <= *limit.upper + slack ? *limit.upper : infinity;
     if (low == -infinity || high == infinity) losses_.add(losses::limits_at_start, limit.place, name);
-    if (low > -infinity || high < infinity) table.numbers("limits", std::array{low, high});
+    if (!(low > -infinity || high < infinity)) return;
+    table.numbers("limits", std::array{low, high});
+    table.text("limit_law", "penalty");
 }
 
 /// A joint that follows another one: coordinate - multiplier times the leader's stays what it is at the

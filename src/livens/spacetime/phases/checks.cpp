@@ -5,6 +5,7 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/spacetime/phases/contacts.h"
+#include "livens/spacetime/phases/decisions.h"
 #include "livens/spacetime/phases/event_watch.h"
 #include "livens/spacetime/phases/events.h"
 #include "livens/spacetime/phases/phases.h"
@@ -52,7 +53,10 @@ void check_between_ends(const Model& model, const Problem& problem, const Method
 void check_decided(const Model& model, const Problem& problem, const Method& method,
                    const SolveOptions& options)
 {
-    const std::string path = "event[" + model.events().front().name + "]";
+    const Event& first = model.events().front();
+    const std::string path = "event[" + first.name + "]";
+    const Joint* begun = begun_by_impact(model, first.action);
+    const bool is_stop = begun != nullptr && begun->impact->open_side != 0;
     const auto refuse = [&](bool is_wrong, const std::string& value, const char* why, const char* help) {
         if (is_wrong)
             throw InputError(
@@ -60,7 +64,8 @@ void check_decided(const Model& model, const Problem& problem, const Method& met
     };
     const Conditions& given = problem.conditions;
     refuse(!is_nodal(method), name_of(method), "only elements of lobatto and radau end where events are",
-           "use the family lobatto or radau");
+           is_stop ? "use the family lobatto or radau; limits of a joint may be springs"
+                   : "use the family lobatto or radau");
     refuse(!given.has_state() || given.at_start != Known::state || !problem.unknowns.is_empty(), "",
            "it is decided on the way from a state at the start",
            "give the state at the start, and no unknowns");

@@ -55,7 +55,9 @@ void read_rope(Builder& builder, const Section& section, const std::string& name
 // Each reports all it finds.
 void read_joints(Builder& builder);
 void read_drives(Builder& builder);   ///< after the joints
-void read_stops(Builder& builder);    ///< after both
+void read_stops(Builder& builder);    ///< after both; also `limits` of joints
+/// Whether `limits` in a joint, or its table for a coordinate, are stops; else springs, or there are none.
+bool are_rigid_limits(const Section& keys);
 /// Those of loads follow the loads, whose expressions may read the others.
 void read_sensors(Builder& builder, bool of_loads);
 

@@ -25,10 +25,16 @@ std::vector<Key> keys_along_angle()
             "kg m^2"}
             .within(positive),
         Key{"limits", types::interval,
-            "Smallest and largest angle; `-inf` or `inf` means no limit. Beyond a limit by d, a torque "
-            "limit_stiffness d (1 + limit_damping d') pushes back; it never pulls.",
+            "Smallest and largest angle; `-inf` or `inf` means no limit. Of limits that are springs a torque "
+            "limit_stiffness d (1 + limit_damping d') pushes back, beyond by d; it never pulls.",
             "rad"}
             .or_infinite(),
+        choice("limit_law", {"rigid", "penalty"},
+               "rigid: nothing passes the limits, which are stops of the names `JOINT.low` and `JOINT.high`; "
+               "penalty: springs act beyond them. Where limit_stiffness or limit_damping stands: penalty."),
+        Key{"limit_restitution", types::number,
+            "Of rigid limits: speed with which they are left, over that with which they were met.", "", "0"}
+            .within({0, 1}),
         Key{"limit_stiffness", types::number,
             "Stiffness of the limits. Default: such that a contact, half a period of the inertia on the "
             "joint, lasts 0.03 T with T = sqrt(model length / gravity), or 0.3 s without gravity.",
@@ -40,29 +46,36 @@ std::vector<Key> keys_along_angle()
 }
 std::vector<Key> keys_along_displacement()
 {
-    return {Key{"damping", types::number, "Damping force per m/s of the rate.", "N s/m", "0"}.within(
-                not_negative),
-            Key{"stiffness", types::number, "Restoring force per metre from `rest`.", "N/m", "0"}.within(
-                not_negative),
-            Key{"rest", types::number, "Unloaded displacement of the stiffness.", "m", "0"},
-            Key{"rotor_inertia", types::number,
-                "Inertia along the displacement, as of a geared rotor: adds half of it times the square of "
-                "the rate to the kinetic energy. lobatto and radau only.",
-                "kg"}
-                .within(positive),
-            Key{"limits", types::interval,
-                "Smallest and largest displacement; `-inf` or `inf` means no limit. Beyond a limit by d, a "
-                "force limit_stiffness d (1 + limit_damping d') pushes back; it never pulls.",
-                "m"}
-                .or_infinite(),
-            Key{"limit_stiffness", types::number,
-                "Stiffness of the limits. Default: such that a contact, half a period of the mass on the "
-                "joint, lasts 0.03 T with T = sqrt(model length / gravity), or 0.3 s without gravity.",
-                "N/m"}
-                .within(positive),
-            Key{"limit_damping", types::number,
-                "Damping of the limits. Default: T / model length; 0 makes bounces lossless.", "s/m"}
-                .within(not_negative)};
+    return {
+        Key{"damping", types::number, "Damping force per m/s of the rate.", "N s/m", "0"}.within(
+            not_negative),
+        Key{"stiffness", types::number, "Restoring force per metre from `rest`.", "N/m", "0"}.within(
+            not_negative),
+        Key{"rest", types::number, "Unloaded displacement of the stiffness.", "m", "0"},
+        Key{"rotor_inertia", types::number,
+            "Inertia along the displacement, as of a geared rotor: adds half of it times the square of "
+            "the rate to the kinetic energy. lobatto and radau only.",
+            "kg"}
+            .within(positive),
+        Key{"limits", types::interval,
+            "Smallest and largest displacement; `-inf` or `inf` means no limit. Of limits that are springs "
+            "a force limit_stiffness d (1 + limit_damping d') pushes back, beyond by d; it never pulls.",
+            "m"}
+            .or_infinite(),
+        choice("limit_law", {"rigid", "penalty"},
+               "rigid: nothing passes the limits, which are stops of the names `JOINT.low` and `JOINT.high`; "
+               "penalty: springs act beyond them. Where limit_stiffness or limit_damping stands: penalty."),
+        Key{"limit_restitution", types::number,
+            "Of rigid limits: speed with which they are left, over that with which they were met.", "", "0"}
+            .within({0, 1}),
+        Key{"limit_stiffness", types::number,
+            "Stiffness of the limits. Default: such that a contact, half a period of the mass on the "
+            "joint, lasts 0.03 T with T = sqrt(model length / gravity), or 0.3 s without gravity.",
+            "N/m"}
+            .within(positive),
+        Key{"limit_damping", types::number,
+            "Damping of the limits. Default: T / model length; 0 makes bounces lossless.", "s/m"}
+            .within(not_negative)};
 }
 
 }   // namespace

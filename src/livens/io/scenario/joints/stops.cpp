@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// [[stop]]: limits of a joint's coordinate, or of the distance of two points, that let nothing beyond them.
+// [[stop]], and `limits` of a joint: those of its coordinate, or of the distance of two points, that let
+// nothing beyond them.
 #include <cmath>
 #include <limits>
 #include <unordered_set>
@@ -31,35 +32,51 @@ Limits read_stop_limits(const Section& section, const std::string& path)
     return limits;
 }
 
-/// With its names: one stop, or one for each limit.
-template <class Add>
-void add_both(const Section& section, const std::string& name, const Limits& limits, const Add& add)
+StopLaw law_of(const Section& section)
 {
-    const bool has_two = std::isfinite(limits.low) && std::isfinite(limits.high);
-    StopLaw law{0, true, section.number("restitution"), section.text("impact") == "together"};
+    return {0, true, section.number("restitution"), section.text("impact") == "together"};
+}
+
+/// Those that are numbers.
+template <class Add>
+void add_each(const Limits& limits, StopLaw law, const Add& add)
+{
     for (const bool is_lowest : {true, false}) {
         law.limit = is_lowest ? limits.low : limits.high;
         law.is_lowest = is_lowest;
-        if (std::isfinite(law.limit)) add(has_two ? name + (is_lowest ? ".low" : ".high") : name, law);
+        if (std::isfinite(law.limit)) add(law);
     }
+}
+
+/// Of a [[stop]], which has one limit or two.
+std::string name_of_side(const std::string& name, const Limits& limits, const StopLaw& law)
+{
+    const bool has_two = std::isfinite(limits.low) && std::isfinite(limits.high);
+    return has_two ? name + (law.is_lowest ? ".low" : ".high") : name;
+}
+
+void add_one(Builder& builder, const std::string& name, const JointReference& of, const StopLaw& law,
+             const std::string& path)
+{
+    const Joint joint = *of.joint;   // a copy, as joints are added
+    const NamedCoordinate coordinate = *of.coordinate;
+    if (coordinate.coordinate.is_angle())
+        check_driven_angle({&joint, &coordinate},
+                           {[&](Instant) {
+                                return TimeValue{law.limit, 0, 0};
+                            },
+                            {}},
+                           {0, 0}, path);
+    const std::vector<Matrix34> X = builder.start_configurations();
+    add_coordinate_stop(builder.model(), name, joint, coordinate, law, Configurations(X));
 }
 
 void add_of_joint(Builder& builder, const Section& section, const std::string& name, const std::string& path)
 {
-    const JointReference of = find_coordinate(builder, section, path);
-    check_units(section, of.coordinate->coordinate.is_angle(), path);
-    const std::vector<Matrix34> X = builder.start_configurations();
-    const Joint joint = *of.joint;   // a copy, as joints are added
-    const NamedCoordinate coordinate = *of.coordinate;
-    add_both(section, name, read_stop_limits(section, path), [&](const std::string& one, const StopLaw& law) {
-        if (coordinate.coordinate.is_angle())
-            check_driven_angle({&joint, &coordinate},
-                               {[&](Instant) {
-                                    return TimeValue{law.limit, 0, 0};
-                                },
-                                {}},
-                               {0, 0}, path);
-        add_coordinate_stop(builder.model(), one, joint, coordinate, law, Configurations(X));
+    check_units(section, find_coordinate(builder, section, path).coordinate->coordinate.is_angle(), path);
+    const Limits limits = read_stop_limits(section, path);
+    add_each(limits, law_of(section), [&](const StopLaw& law) {
+        add_one(builder, name_of_side(name, limits, law), find_coordinate(builder, section, path), law, path);
     });
 }
 
@@ -76,12 +93,83 @@ void add_of_points(Builder& builder, const Section& section, const std::string& 
     const std::vector<Matrix34> X = builder.start_configurations();
     const BodyPoint a{first.index, builder.in_axes(first.index, section.row("points", 0))},
         b{second.index, builder.in_axes(second.index, section.row("points", 1))};
-    add_both(section, name, limits, [&](const std::string& one, const StopLaw& law) {
-        add_distance_stop(builder.model(), one, a, b, law, Configurations(X));
+    add_each(limits, law_of(section), [&](const StopLaw& law) {
+        add_distance_stop(builder.model(), name_of_side(name, limits, law), a, b, law, Configurations(X));
     });
 }
 
+void remember_stop(Builder& builder, const std::string& name, const Section& section)
+{
+    builder.remember("joint[" + name + "]", section);
+    builder.remember("event[" + name + "]", section);
+    builder.remember("event[" + name + " opens]", section);
+}
+
+/// What a joint, or its table for one coordinate of two, states of a coordinate.
+struct LimitedCoordinate {
+    const Section* keys;
+    std::string name;         ///< of its stops, but for .low and .high
+    std::string_view which;   ///< empty: the joint has but one
+};
+
+std::vector<LimitedCoordinate> limited_coordinates(const Section& joint)
+{
+    if (joint.kind() == any_kind || !joint.is_valid()) return {};
+    const std::string name = joint.has("name") ? joint.text("name") : default_name(joint);
+    if (joint.takes("limits")) return {{&joint, name, ""}};
+    std::vector<LimitedCoordinate> all;
+    for (const std::string_view which : {"angle", "displacement", "angle_1", "angle_2", "angle_3"})
+        for (const Section& table : joint.sections(which))
+            all.push_back({&table, name + " " + std::string(which), which});
+    return all;
+}
+
+void add_limits(Builder& builder, const LimitedCoordinate& of, int joint, const std::string& path)
+{
+    const Section& keys = *of.keys;
+    const Value& both = *keys.find("limits");
+    const Limits limits{both.numbers[0], both.numbers[1]};
+    if (!(limits.low < limits.high))
+        throw InputError({"joint-limits", path + ".limits",
+                          "the limits of '" + of.name + "' are not in order",
+                          to_text(limits.low) + ", " + to_text(limits.high), "the lower one first", "", ""});
+    const auto coordinate_of = [&](const Joint& one) {
+        return of.which.empty() ? &one.coordinates.front() : find_coordinate(one, of.which);
+    };
+    add_each(limits, {0, true, keys.number("limit_restitution"), false}, [&](const StopLaw& law) {
+        const Joint& one = builder.model().joints()[static_cast<std::size_t>(joint)];
+        if (coordinate_of(one) == nullptr) return;   // it is told with its loads
+        add_one(builder, of.name + (law.is_lowest ? ".low" : ".high"), {&one, coordinate_of(one)}, law, path);
+    });
+}
+
+void read_limits_of_joints(Builder& builder, std::unordered_set<std::string>& taken)
+{
+    for (const Section& joint : builder.top().sections("joint"))
+        for (const LimitedCoordinate& one : limited_coordinates(joint)) {
+            if (!are_rigid_limits(*one.keys)) continue;
+            const std::string name = joint.has("name") ? joint.text("name") : default_name(joint);
+            const int index = builder.model().find_joint(name);
+            if (index < 0) continue;   // told already
+            for (const char* side : {".low", ".high"}) {
+                remember_stop(builder, one.name + side, *one.keys);
+                claim_name(joint, "joint, drive or stop", one.name + side, taken,
+                           {"limits of a joint are stops of these names", "give the other one another name"});
+            }
+            const std::string path = "joint[" + one.name + "]";
+            builder.remember(path, *one.keys);
+            builder.guard(path, [&] { add_limits(builder, one, index, path); });
+        }
+}
+
 }   // namespace
+
+bool are_rigid_limits(const Section& keys)
+{
+    if (!keys.takes("limits") || !keys.has("limits")) return false;
+    if (keys.has("limit_law")) return keys.text("limit_law") == "rigid";
+    return !keys.has("limit_stiffness") && !keys.has("limit_damping");
+}
 
 Table stop_table()
 {
@@ -120,14 +208,11 @@ void read_stops(Builder& builder)
 {
     std::unordered_set<std::string> taken;
     for (const Joint& joint : builder.model().joints()) taken.insert(joint.name);
+    read_limits_of_joints(builder, taken);
     for (const Section& section : builder.top().sections("stop")) {
         const std::string name = section.text("name"), path = "stop[" + name + "]";
         builder.remember(path, section);
-        for (const char* part : {"", ".low", ".high"}) {
-            builder.remember("joint[" + name + part + "]", section);
-            builder.remember("event[" + name + part + "]", section);
-            builder.remember("event[" + name + part + " opens]", section);
-        }
+        for (const char* part : {"", ".low", ".high"}) remember_stop(builder, name + part, section);
         if (!section.is_valid()) continue;
         claim_name(section, "joint, drive or stop", name, taken,
                    {"results refer to stops as to joints", "give it another 'name'"});

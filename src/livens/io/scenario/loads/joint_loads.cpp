@@ -31,7 +31,12 @@ struct AlongCoordinate {
         if (against == Against::far_turns) return of.readings.empty() ? nullptr : &of.readings.back();
         return which.empty() ? &of.coordinates.front() : find_coordinate(of, which);
     }
-    bool has_limits() const { return keys->has(against == Against::motion ? "limits" : "limit"); }
+    /// That are springs.
+    bool has_limits() const
+    {
+        return against == Against::motion ? keys->has("limits") && !are_rigid_limits(*keys)
+                                          : keys->has("limit");
+    }
     bool acts() const
     {
         const bool is_held = keys->number("damping") > 0 || keys->number("stiffness") > 0;
@@ -79,9 +84,19 @@ bool check_joint_loads(const Section& joint, const AlongCoordinate& part)
                      "it is where a spring has no force, and there is no 'stiffness'"))
         return false;
     if (keys.takes("limits") && !keys.has("limits") &&
-        !keys.refuse({"limit_stiffness", "limit_damping"}, "joint-loads", "there are no 'limits'"))
+        !keys.refuse({"limit_law", "limit_restitution", "limit_stiffness", "limit_damping"}, "joint-loads",
+                     "there are no 'limits'"))
         return false;
-    if (!part.acts() || !joint.has("until")) return true;
+    const bool is_rigid = are_rigid_limits(keys);
+    if (is_rigid &&
+        !keys.refuse({"limit_stiffness", "limit_damping"}, "joint-loads",
+                     "limits that are rigid have none; limit_law = \"penalty\" makes them springs"))
+        return false;
+    if (keys.takes("limits") && keys.has("limits") && !is_rigid &&
+        !keys.refuse({"limit_restitution"}, "joint-loads",
+                     "limits that are springs have 'limit_damping'; limit_law = \"rigid\" makes them stops"))
+        return false;
+    if ((!part.acts() && !is_rigid) || !joint.has("until")) return true;
     return keys.error("", "joint-loads", joint.label() + " is released, but its loads would continue to act",
                       {"loads along a coordinate have no end",
                        "leave out 'until', or let a [[load]] of type \"actuator\" with 'until' act, by a "

@@ -156,7 +156,9 @@ constexpr OtherKey other_keys[] = {
     {"[[joint]]", "",
      "limit range lower upper min max stop stops jointlimits lowerlimit upperlimit limited hardstop "
      "jointrange",
-     "limits", "limits = [\"-90 deg\", \"90 deg\"], of the coordinate; beyond them acts a stiff spring"},
+     "limits",
+     "limits = [\"-90 deg\", \"90 deg\"], of the coordinate: rigid stops, or springs by limit_law = "
+     "\"penalty\""},
     {"[[joint]]", "", "armature rotor reflectedinertia motorinertia gearedinertia", "rotor_inertia"},
     {"[[joint]]", "", "limitspring limitk stopstiffness contactstiffness", "limit_stiffness"},
     {"[[joint]]", "", "limitc stopdamping contactdamping dissipation", "limit_damping"},
