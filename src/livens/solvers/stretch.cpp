@@ -302,6 +302,15 @@ void Stretch::leave()
     row_at_.clear();
 }
 
+long long Stretch::flops() const
+{
+    long long n = 0;
+    for (std::size_t k = 0; k < factors_.rows.size(); ++k)
+        n += 2 * static_cast<long long>(factors_.lower_starts[k + 1] - factors_.lower_starts[k]) *
+             static_cast<long long>(factors_.upper_starts[k + 1] - factors_.upper_starts[k]);
+    return n;
+}
+
 void Stretch::forward(double* y) const
 {
     for (std::size_t k = 0; k < factors_.rows.size(); ++k) {

@@ -125,6 +125,8 @@ public:
         return static_cast<long long>(factors_.upper.size() + factors_.lower.size() + factors_.rows.size());
     }
 
+    long long flops() const;   ///< of products with pivot rows
+
     /// y, by rows of the matrix: what eliminations do to it.
     void forward(double* y) const;
     /// x, by columns of the matrix, from y and the kept ones, which it has.
