@@ -11,7 +11,7 @@
 namespace livens::inline solvers_internal {
 
 /// Another rank is lost, or has failed: nobody can go on.
-struct RankLost : std::runtime_error {
+struct [[gnu::visibility("default")]] RankLost : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
@@ -45,7 +45,7 @@ public:
 
 /// Ranks as one of them sees them. All but send() and receive() is called by all ranks in the same order. A
 /// rank that is lost ends all others: RankLost.
-class Ranks {
+class [[gnu::visibility("default")]] Ranks {
 public:
     Ranks() = default;
     Ranks(const Ranks&) = delete;
@@ -79,6 +79,12 @@ public:
     /// By a distributed solver, or gathered by the first rank.
     virtual std::unique_ptr<RankChain> make_chain();
     const Traffic& traffic() const { return traffic_; }
+    /// What others have sent for this rank.
+    void count(long long messages, long long bytes)
+    {
+        traffic_.messages += messages;
+        traffic_.bytes += bytes;
+    }
 
 protected:
     virtual void put(int to, std::span<const double> values) = 0;
@@ -108,13 +114,13 @@ private:
 
 /// Calls work(ranks) for each of n ranks, in threads of this process: for tests, and to count what many ranks
 /// would send. What one of them throws ends all, and is thrown on.
-void run_as_ranks(int n, const std::function<void(Ranks&)>& work);
+[[gnu::visibility("default")]] void run_as_ranks(int n, const std::function<void(Ranks&)>& work);
 
 /// Of the job that this process was started in by mpirun; null where the build has no PETSc. The first call
 /// begins MPI; the last rank to be destroyed ends it.
-std::unique_ptr<Ranks> make_mpi_ranks();
+[[gnu::visibility("default")]] std::unique_ptr<Ranks> make_mpi_ranks();
 /// Ends all processes of the job, if there is one that has begun, with this exit code.
-void abort_mpi(int exit_code);
-bool has_mpi();
+[[gnu::visibility("default")]] void abort_mpi(int exit_code);
+[[gnu::visibility("default")]] bool has_mpi();
 
 }   // namespace livens::inline solvers_internal
