@@ -117,7 +117,7 @@ class ByMpirun(Distributed):
         name = self.write(scenario(1, 240))
         said = {n: json.loads(self.ranks(n, name, "--json").stdout)["distributed"] for n in (2, 4)}
         self.assertIn("has 120 of 240 elements", said[2])
-        self.assertIn("has 60 of 240 elements", said[4])
+        self.assertIn("has 70 of 240 elements", said[4])
 
     def test_memory_of_a_rank_falls(self):
         wrapper = self.folder / "peak.py"

@@ -105,6 +105,9 @@ struct StretchFactors {
 
     void clear();
     void end_pivot();
+    /// For `n` pivots, by those that are there: what follows time goes on as it began. What grows by itself would
+    /// take three times its size on the way.
+    void reserve(int n);
 };
 
 class Stretch {
