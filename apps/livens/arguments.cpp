@@ -150,7 +150,10 @@ void add_solve_command(CLI::App& app, Arguments& a)
 {
     const auto given = arguments_of<SolveArguments>();
     CLI::App& solve = add_command(app, a, "solve", "Solve scenarios and write result files",
-                                  [given](const Common& common) { return solve_command(*given, common); });
+                                  [given](const Common& common) {
+                        return given->is_distributed ? distributed_command(*given, common)
+                                                     : solve_command(*given, common);
+                    });
     solve.add_option("FILE", given->scenarios, "scenario (TOML), or several")
         ->required()
         ->type_name("FILE.toml");
@@ -180,6 +183,8 @@ void add_solve_command(CLI::App& app, Arguments& a)
                     "processor; default: 1")
         ->check(CLI::Range(0, 256))
         ->type_name("N");
+    solve.add_flag("--distributed", given->is_distributed,
+                   "one motion by all processes of 'mpirun -n K livens solve ..': see docs/howto/cluster.md");
     add_choice(solve, "--simd", given->simd, {"sse2", "avx2", "avx512"},
                "instruction set to solve with; default: avx2 if the processor has it, else sse2");
     add_set(solve, a);

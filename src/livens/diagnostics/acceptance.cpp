@@ -107,9 +107,9 @@ private:
     std::vector<std::string>& reasons_;
 };
 
-void measure(Verdict& v, const Model& model, const Motion& motion, bool holds_weakly)
+/// `some`: longer motions' series are made again where they are needed.
+void measure(Verdict& v, const Model& model, const Motion& motion, bool holds_weakly, int some = 4096)
 {
-    constexpr int some = 4096;   // of longer motions they are made again where they are needed
     const bool is_short = motion.n_elements() < some;
     const auto series = std::make_shared<MotionSeries>();
     MotionPass pass(model, motion, {true, true, is_short && has_own_integrals(model, motion), is_short});
@@ -189,7 +189,38 @@ void find_horizon(Verdict& v, const Model& model, const Motion& motion, std::spa
             " s, but beyond this horizon it is one of many that double precision cannot distinguish");
 }
 
+/// What the balances and the figures of nodes say, and how far the guess is.
+void weigh(const Verdict& v, const SolveReport& report, bool holds_weakly, bool has_blocks, bool damps,
+           Reasons& reasons)
+{
+    reasons.distance(report.guess_distance, report.guess_distance_time);
+    reasons.violation(v.max_constraint_violation,
+                      holds_weakly ? acceptable_nodal_violation : acceptable_violation, " at element nodes");
+    reasons.violation(v.max_weak_violation, acceptable_weak_violation, " in the mean over an element");
+    if (!damps)   // else an element rings within itself, once, where it damps
+        reasons.zigzag(v.zigzag_positions, v.zigzag_time, "velocities", has_blocks);
+    if (v.zigzag_momenta != v.zigzag_positions)   // else the momentum is that of the same velocities
+        reasons.zigzag(v.zigzag_momenta, v.zigzag_time, "momenta", has_blocks);
+    reasons.jump(v.velocity_jump, v.velocity_jump_time);
+    reasons.drift(v.energy_drift, "energy");
+    reasons.drift(v.linear_momentum_drift, "linear momentum");
+    reasons.drift(v.angular_momentum_drift, "angular momentum");
+}
+
 }   // namespace
+
+Verdict measure_part(const Model& model, const Motion& part)
+{
+    Verdict v;
+    measure(v, model, part, true, std::numeric_limits<int>::max());
+    return v;
+}
+
+void weigh_weak(Verdict& verdict, const SolveReport& report)
+{
+    Reasons reasons(verdict.reasons);
+    weigh(verdict, report, true, true, false, reasons);
+}
 
 Verdict judge(const Model& model, const Motion& motion, const SolveReport& report,
               const ErrorEstimate& estimate, std::span<const double> growth, const Growing& part,
@@ -231,18 +262,7 @@ Verdict judge(const Model& model, const Motion& motion, const SolveReport& repor
     if (!report.estimate_failed.empty())
         v.reasons.push_back("the error is not known, since " + report.estimate_failed);
     const bool has_blocks = report.iterations.size() < static_cast<std::size_t>(motion.n_elements());
-    reasons.distance(report.guess_distance, report.guess_distance_time);
-    reasons.violation(v.max_constraint_violation,
-                      holds_weakly ? acceptable_nodal_violation : acceptable_violation, " at element nodes");
-    reasons.violation(v.max_weak_violation, acceptable_weak_violation, " in the mean over an element");
-    if (!motion.damps())   // else an element rings within itself, once, where it damps
-        reasons.zigzag(v.zigzag_positions, v.zigzag_time, "velocities", has_blocks);
-    if (v.zigzag_momenta != v.zigzag_positions)   // else the momentum is that of the same velocities
-        reasons.zigzag(v.zigzag_momenta, v.zigzag_time, "momenta", has_blocks);
-    reasons.jump(v.velocity_jump, v.velocity_jump_time);
-    reasons.drift(v.energy_drift, "energy");
-    reasons.drift(v.linear_momentum_drift, "linear momentum");
-    reasons.drift(v.angular_momentum_drift, "angular momentum");
+    weigh(v, report, holds_weakly, has_blocks, motion.damps(), reasons);
     return v;
 }
 

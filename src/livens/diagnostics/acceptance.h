@@ -74,6 +74,11 @@ struct Verdict : InvariantFigures, ResolutionFigures, ErrorFigures {
     ViolationReport violations;   ///< means only where constraints hold weakly, nothing between nodes
 };
 
+/// Figures of one of several parts of a motion by itself, with all its series: parts are joined by who has them.
+Verdict measure_part(const Model& model, const Motion& part);
+/// Reasons that invariants and zigzags of a motion tell whose constraints hold weakly, as judge() has them.
+void weigh_weak(Verdict& verdict, const SolveReport& report);
+
 /// Measures a motion and, if the report says that it converged, judges it. It has a reason to be suspect if
 ///   |Phi| / scale at nodes > 1e-6, where constraints hold at points;
 ///   its mean over an element > 1e-3, or |Phi| / scale at nodes > 0.05, where they hold weakly (the latter

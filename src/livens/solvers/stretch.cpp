@@ -19,6 +19,9 @@ namespace {
 /// Runs that are no farther apart are one: its zeros cost less than another run.
 constexpr int most_between = 2;
 
+/// Pivots after which more of the same kind are foreseen.
+constexpr int least_foreseen = 100;
+
 /// Pivots below that share of their column's largest entry are none.
 constexpr double least_pivot = 1e-10;
 
@@ -65,6 +68,20 @@ void StretchFactors::clear()
     runs.clear();
     lower.clear();
     for (auto* starts : {&run_starts, &upper_starts, &lower_starts}) starts->assign(1, 0);
+}
+
+void StretchFactors::reserve(int n)
+{
+    const double share = 1.1 * n / static_cast<double>(rows.size());
+    const auto foresee = [&](auto& numbers) {
+        numbers.reserve(static_cast<std::size_t>(share * static_cast<double>(numbers.size())));
+    };
+    foresee(rows);
+    foresee(diagonal);
+    foresee(upper);
+    foresee(runs);
+    foresee(lower);
+    for (auto* starts : {&run_starts, &upper_starts, &lower_starts}) foresee(*starts);
 }
 
 void StretchFactors::end_pivot()
@@ -279,6 +296,7 @@ bool Stretch::eliminate(const StoredRows& rows)
         if (pivot < 0) return false;
         take_off(k, pivot);
         factors_.end_pivot();
+        if (k == n / 16 && k > least_foreseen) factors_.reserve(n);
     }
     enter(rows, std::numeric_limits<int>::max(), next);
     leave();
@@ -300,6 +318,15 @@ void Stretch::leave()
         left_values_.insert(left_values_.end(), values, values + pattern_.kept.size());
     }
     row_at_.clear();
+}
+
+long long Stretch::flops() const
+{
+    long long n = 0;
+    for (std::size_t k = 0; k < factors_.rows.size(); ++k)
+        n += 2 * static_cast<long long>(factors_.lower_starts[k + 1] - factors_.lower_starts[k]) *
+             static_cast<long long>(factors_.upper_starts[k + 1] - factors_.upper_starts[k]);
+    return n;
 }
 
 void Stretch::forward(double* y) const

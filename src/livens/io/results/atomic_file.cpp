@@ -175,15 +175,43 @@ AtomicFile::~AtomicFile()
     if (out_.number() >= 0 && !temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
-void AtomicFile::write(std::uint64_t offset, std::string_view bytes)
+namespace {
+
+void write_all(int out, std::uint64_t offset, std::string_view bytes, const fs::path& file)
 {
     while (!bytes.empty()) {
         const ssize_t n = insistent(
-            [&] { return ::pwrite(out_.number(), bytes.data(), bytes.size(), static_cast<off_t>(offset)); });
-        if (n < 0) fail("cannot write " + quoted(file_), errno);
+            [&] { return ::pwrite(out, bytes.data(), bytes.size(), static_cast<off_t>(offset)); });
+        if (n < 0) fail("cannot write " + quoted(file), errno);
         bytes.remove_prefix(static_cast<std::size_t>(n));
         offset += static_cast<std::uint64_t>(n);
     }
+}
+
+}   // namespace
+
+void AtomicFile::write(std::uint64_t offset, std::string_view bytes)
+{
+    write_all(out_.number(), offset, bytes, file_);
+}
+
+PartOfFile::PartOfFile(const fs::path& file)
+    : file_(file), out_(::open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW))
+{
+    if (out_.number() < 0)
+        fail("cannot write a part of the result to " + quoted(file) +
+                 ", which the first process has made; all of them must see its folder",
+             errno);
+}
+
+void PartOfFile::write(std::uint64_t offset, std::string_view bytes)
+{
+    write_all(out_.number(), offset, bytes, file_);
+}
+
+void PartOfFile::sync()
+{
+    if (::fsync(out_.number()) != 0) fail("cannot write " + quoted(file_), errno);
 }
 
 /// A name that nobody has is taken only while nobody has it.

@@ -38,6 +38,7 @@ public:
 
     void write(std::uint64_t offset, std::string_view bytes);
     void commit();
+    const std::filesystem::path& temporary() const { return temporary_; }
 
 private:
     void create();
@@ -46,6 +47,19 @@ private:
     std::filesystem::path file_, target_, temporary_;
     bool (*is_own_)(std::string_view head);
     Descriptor out_{-1};
+};
+
+/// A part of a file that somebody else has made, and puts in its place.
+class PartOfFile {
+public:
+    /// Throws IoError, where it is not to be seen from here, too.
+    explicit PartOfFile(const std::filesystem::path& file);
+    void write(std::uint64_t offset, std::string_view bytes);
+    void sync();
+
+private:
+    std::filesystem::path file_;
+    Descriptor out_;
 };
 
 /// A regular file; `O_NONBLOCK`, so that a pipe is refused instead of waited for. Throws IoError.

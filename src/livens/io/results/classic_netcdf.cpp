@@ -170,8 +170,8 @@ void ClassicWriter::put_header()
         for (const std::string& name : variable.dimensions) {
             put_count(static_cast<std::uint64_t>(named(dimensions_, name) - dimensions_.data()));
         }
-        progress_.push_back({});
-        progress_.back().checksum_place = put_attributes(variable.attributes, "checksum");
+        progress_[static_cast<std::size_t>(&variable - variables_.data())].checksum_place =
+            put_attributes(variable.attributes, "checksum");
         put_word(header_, static_cast<std::uint32_t>(variable.type));
         put_count(variable.n_bytes);
         begins.push_back(header_.size());
@@ -186,12 +186,54 @@ void ClassicWriter::put_header()
     }
 }
 
+/// Dimensions get their whole lengths, and variables their parts.
+void ClassicWriter::divide()
+{
+    std::vector<std::optional<Slab>> slabs;
+    std::vector<std::uint64_t> lengths;
+    for (ClassicDimension& dimension : dimensions_) {
+        lengths.push_back(dimension.length);
+        slabs.push_back(shared_->slab(dimension.name, dimension.length));
+        if (slabs.back()) dimension.length = slabs.back()->total;
+    }
+    for (std::size_t i = 0; i < variables_.size(); ++i) {
+        ClassicVariable& variable = variables_[i];
+        Progress& progress = progress_[i];
+        const auto front = static_cast<std::size_t>(named(dimensions_, variable.dimensions.front()) -
+                                                    dimensions_.data());
+        progress.expected = shared_->is_first() ? variable.n_bytes : 0;
+        if (!slabs[front]) continue;
+        assert(variable.type == NumberType::real);
+        const Slab& slab = *slabs[front];
+        const std::uint64_t in_one = variable.n_values / lengths[front];
+        progress.is_divided = true;
+        progress.left_out = static_cast<std::size_t>(slab.skipped * in_one);
+        progress.expected = (lengths[front] - slab.skipped) * in_one * sizeof(double);
+        progress.offset = slab.before * in_one * sizeof(double);
+        variable.n_values = slab.total * in_one;
+        variable.n_bytes = variable.n_values * sizeof(double);
+    }
+}
+
+/// The checksum of a variable whose part is complete.
+void ClassicWriter::pass_on(int variable)
+{
+    Progress& progress = progress_[variable];
+    if (!progress.is_divided || progress.is_passed_on || progress.done < progress.expected) return;
+    if (progress.expected == 0) progress.checksum.go_on_from(shared_->state_before(variable));
+    shared_->pass_on(variable, progress.checksum.state());
+    progress.is_passed_on = true;
+}
+
 void ClassicWriter::begin(ByteSink sink)
 {
     buffer_.resize(buffer_size);
+    progress_.resize(variables_.size());
+    for (std::size_t i = 0; i < variables_.size(); ++i) progress_[i].expected = variables_[i].n_bytes;
+    if (shared_ != nullptr) divide();
     put_header();
     sink_ = std::move(sink);
-    sink_(0, header_);
+    if (shared_ == nullptr || shared_->is_first()) sink_(0, header_);
 }
 
 /// put(checksum) returns the next bytes of the variable.
@@ -200,9 +242,12 @@ void ClassicWriter::write(int variable, std::size_t n_bytes, const Put& put)
 {
     Progress& progress = progress_[variable];
     // The checksum takes words of eight bytes, so pieces may end elsewhere only at the very end.
-    assert(progress.done % 8 == 0 && progress.done + n_bytes <= variables_[variable].n_bytes);
-    sink_(variables_[variable].begin + progress.done, put(progress.checksum));
+    assert(progress.done % 8 == 0 && progress.done + n_bytes <= progress.expected);
+    if (progress.is_divided && progress.done == 0)
+        progress.checksum.go_on_from(shared_->state_before(variable));
+    sink_(variables_[variable].begin + progress.offset + progress.done, put(progress.checksum));
     progress.done += n_bytes;
+    pass_on(variable);
 }
 
 void ClassicWriter::write(int variable, std::string_view bytes)
@@ -217,6 +262,10 @@ template <class Number>
 void ClassicWriter::append_swapped(int variable, std::span<const Number> values)
 {
     assert(size_of(static_cast<std::uint64_t>(variables_[variable].type)) == sizeof(Number));
+    if (progress_[variable].expected == 0) return;   // the first part has it
+    const std::size_t out = std::min(progress_[variable].left_out, values.size());
+    progress_[variable].left_out -= out;
+    values = values.subspan(out);
     constexpr std::size_t most = buffer_size / sizeof(Number);
     for (std::size_t i = 0; i < values.size(); i += most) {
         const std::span<const Number> some = values.subspan(i, std::min(most, values.size() - i));
@@ -233,6 +282,7 @@ template void ClassicWriter::append_swapped(int, std::span<const int>);
 void ClassicWriter::append(int variable, std::string_view bytes)
 {
     assert(bytes.size() == variables_[variable].n_values);
+    if (progress_[variable].expected == 0) return;
     const std::size_t whole = bytes.size() & ~std::size_t{7};
     write(variable, bytes.substr(0, whole));
     // Bytes that fill the variable up to four belong to it, and to its checksum.
@@ -243,8 +293,12 @@ void ClassicWriter::append(int variable, std::string_view bytes)
 
 void ClassicWriter::finish()
 {
+    for (std::size_t i = 0; shared_ != nullptr && i < variables_.size(); ++i) pass_on(static_cast<int>(i));
+    for (Progress& progress : progress_)
+        if (progress.is_divided) progress.checksum.go_on_from(shared_->last_state(progress.checksum.state()));
+    if (shared_ != nullptr && !shared_->is_first()) return;
     for (std::size_t i = 0; i < variables_.size(); ++i) {
-        assert(progress_[i].done == variables_[i].n_bytes);
+        assert(progress_[i].done == progress_[i].expected);
         header_.replace(progress_[i].checksum_place, no_checksum.size(), progress_[i].checksum.text());
     }
     Checksum of_header;

@@ -49,6 +49,9 @@ public:
     void add(std::span<const double> numbers, char* out);
     void add(std::span<const int> numbers, char* out);
     std::string text() const;   ///< 16 hexadecimal digits
+    /// Between those who go on with each other's.
+    std::uint64_t state() const { return state_; }
+    void go_on_from(std::uint64_t state) { state_ = state; }
 
 private:
     std::uint64_t state_ = 0xcbf29ce484222325u;
@@ -57,6 +60,26 @@ private:
 /// Where the bytes of a new file go; the pieces cover it, each byte once, but for the header, which comes
 /// first without checksums and last with them.
 using ByteSink = std::function<void(std::uint64_t offset, std::string_view bytes)>;
+
+/// Where values of a part of a dimension are among all, and how many of them the part before has, too.
+struct Slab {
+    std::uint64_t before = 0, total = 0, skipped = 0;
+};
+
+/// What writers of one file know of each other. Each has declared the same, appends its own values of variables
+/// whose first dimension is divided, real ones, and puts them where they belong; the first writes all others.
+class SharedFile {
+public:
+    virtual ~SharedFile() = default;
+    virtual bool is_first() const = 0;
+    /// Of a dimension that has `here` values in this part; none: it is not divided.
+    virtual std::optional<Slab> slab(const std::string& dimension, std::uint64_t here) = 0;
+    /// Checksum of what the parts before have of a variable.
+    virtual std::uint64_t state_before(int variable) = 0;
+    virtual void pass_on(int variable, std::uint64_t state) = 0;
+    /// Those of the last part, for the first one.
+    virtual std::uint64_t last_state(std::uint64_t own) = 0;
+};
 
 /// Declare everything, begin(), append() the values of every variable, of several in turns if need be,
 /// finish(). What is kept in memory is the header and a buffer of fixed size. Every byte of the file is under
@@ -74,6 +97,8 @@ public:
     /// All dimensions are there. Returns the number by which append() knows it.
     int variable(ClassicVariable variable);
 
+    /// Before begin(); must outlive this.
+    void share(SharedFile& shared) { shared_ = &shared; }
     void begin(ByteSink sink);
     void append(int variable, std::span<const double> values) { append_swapped(variable, values); }
     void append(int variable, std::span<const int> values) { append_swapped(variable, values); }
@@ -85,7 +110,13 @@ private:
         std::uint64_t done = 0;   ///< bytes
         Checksum checksum{};
         std::size_t checksum_place = 0;   ///< in the header
+        // Of what is shared: bytes that this part has, how many the parts before have, numbers to be left out.
+        std::uint64_t expected = 0, offset = 0;
+        std::size_t left_out = 0;
+        bool is_divided = false, is_passed_on = false;
     };
+    void divide();
+    void pass_on(int variable);
 
     void write(int variable, std::string_view bytes);
     template <class Put>
@@ -107,6 +138,7 @@ private:
     std::size_t checksum_place_ = 0;
     ByteSink sink_;
     std::vector<char> buffer_;
+    SharedFile* shared_ = nullptr;
 };
 
 /// A file to be read: regular, or bytes in memory.

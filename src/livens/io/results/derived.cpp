@@ -171,7 +171,7 @@ std::string manifest(const Run& run)
 
 }   // namespace
 
-void write_derived(RunWriter& archive, const Model& model, const Run& run)
+void write_derived(RunWriter& archive, const Model& model, const Run& run, bool has_samples)
 {
     const Motion& m = run.motion;
     const MotionSeries* const known = run.verdict.series.get();
@@ -183,7 +183,7 @@ void write_derived(RunWriter& archive, const Model& model, const Run& run)
     write_integrals(archive, model, m, known);
     write_violations(archive, model, m, known);
     write_model(archive, model);
-    write_samples(archive, model, run);
+    if (has_samples) write_samples(archive, model, run);
     archive.text("manifest", "versions, options, figures (JSON)", manifest(run));
 }
 

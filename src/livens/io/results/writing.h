@@ -75,7 +75,8 @@ private:
 
 /// What is in the file for readers other than livens, made from model and run while it is written: samples at
 /// the output times, times of nodes, masses, integrals over elements.
-void write_derived(RunWriter& archive, const Model& model, const Run& run);
+/// Without samples: of a part of a motion, whose turns are not counted from its start.
+void write_derived(RunWriter& archive, const Model& model, const Run& run, bool has_samples = true);
 /// The samples among them.
 void write_samples(RunWriter& archive, const Model& model, const Run& run);
 

@@ -105,6 +105,9 @@ struct StretchFactors {
 
     void clear();
     void end_pivot();
+    /// For `n` pivots, by those that are there: what follows time goes on as it began. What grows by itself would
+    /// take three times its size on the way.
+    void reserve(int n);
 };
 
 class Stretch {
@@ -124,6 +127,8 @@ public:
     {
         return static_cast<long long>(factors_.upper.size() + factors_.lower.size() + factors_.rows.size());
     }
+
+    long long flops() const;   ///< of products with pivot rows
 
     /// y, by rows of the matrix: what eliminations do to it.
     void forward(double* y) const;

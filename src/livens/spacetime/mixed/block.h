@@ -44,7 +44,7 @@ private:
 
 /// The whole matrix of a block, rows and columns scaled (docs/theory.md, "Scaling"), each
 /// solution refined once. Increments are not scaled.
-class Block final : public NewtonProblem {
+class Block : public NewtonProblem {
 public:
     /// `border`: of conditions by component, or null; must outlive it.
     Block(Equations equations, SparseBackend backend, Border* border = nullptr);
@@ -75,7 +75,7 @@ public:
     double size_of(std::span<const double> dx) const override;
     Rows rows() const override;
 
-private:
+protected:
     /// The matrix of the equations alone.
     SparseMatrix& inner() { return border_ != nullptr ? scaled_.inner : scaled_.all; }
     bool form();

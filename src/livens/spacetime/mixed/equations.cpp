@@ -27,7 +27,10 @@ std::string Equations::residual(const Fields& fields, std::vector<double>& r)
     dlambda_.resize(static_cast<std::size_t>(m.n_rows()) * functions.multipliers().size());
     r.resize(static_cast<std::size_t>(space_.size()));   // of which each is of a function
     workspaces_.resize(static_cast<std::size_t>(Crew::size()));
-    for (Workspace& at : workspaces_) at.bad.clear();
+    for (Workspace& at : workspaces_) {
+        at.bad.clear();
+        at.n_formed = 0;
+    }
     const auto take = [&r](int to, const std::vector<double>& raw, int A, int count) {
         if (to >= 0) std::copy_n(raw.data() + static_cast<std::size_t>(A) * count, count, r.data() + to);
     };
@@ -57,12 +60,20 @@ std::string Equations::residual(const Fields& fields, std::vector<double>& r)
     return bad;
 }
 
+int Equations::n_formed() const
+{
+    int n = 0;
+    for (const Workspace& at : workspaces_) n += at.n_formed;
+    return n;
+}
+
 void Equations::add_elements(const Fields& fields, Workspace& at)
 {
     const BlockFunctions& functions = space_.functions;
     const Coordinates& m = space_.coordinates;
     at.F.resize(static_cast<std::size_t>(m.n_X()));
     const auto [first, last] = functions.elements_of(at.begin, at.end);
+    at.n_formed = last - first;
     for (int e = first; e < last; ++e) {
         Patience::ask();
         for (int g = 0; g < functions.n_gauss(); ++g) {

@@ -24,6 +24,8 @@ public:
     Equations(FieldSpace space, EndMomentum at_start, EndMomentum at_end);
 
     const FieldSpace& space() const { return space_; }
+    /// Elements that the last residual() has evaluated, those at the border of two threads for both.
+    int n_formed() const;
     const EndMomentum& given(bool at_end) const { return at_end ? at_end_ : at_start_; }
     void give(bool at_end, EndMomentum momentum) { (at_end ? at_end_ : at_start_) = std::move(momentum); }
     /// Rows at `fields`; the solved ones are returned, all are kept for end_momentum(). Tells of a load that
@@ -36,7 +38,7 @@ public:
 private:
     /// Of a thread, with its functions.
     struct Workspace {
-        int begin = 0, end = 0;
+        int begin = 0, end = 0, n_formed = 0;
         FieldSample sample;
         std::vector<double> F;   // forces less reactions at the Gauss point, 12 numbers a body
         std::string bad;

@@ -68,4 +68,10 @@ std::pair<int, int> BlockFunctions::elements_of(int begin, int end) const
     return {std::max(low - p, 0), std::min(last + p, n_elements())};
 }
 
+void BlockFunctions::go_on(double before, double behind)
+{
+    if (before > 0) lengths_.front() = 0.5 * (lengths_.front() + before);
+    if (behind > 0) lengths_.back() = 0.5 * (lengths_.back() + behind);
+}
+
 }   // namespace livens::mixed

@@ -40,6 +40,9 @@ public:
     double weight(int e, int g) const { return weights_[g] * space_.length(e); }
     double time(int e, int g) const { return space_.ends()[e] + places_[g] * space_.length(e); }
 
+    /// Time goes on beyond the ends, with elements of these lengths; 0: it does not.
+    void go_on(double before, double behind);
+
     /// Mean length, and middle, of the elements where function A lives.
     double length(int A) const { return lengths_[A]; }
     double centre(int A) const { return centres_[A]; }

@@ -57,15 +57,15 @@ MotionOfBlocks::MotionOfBlocks(const Coordinates& coordinates, const TimeMesh& m
     : coordinates_(coordinates), mesh_(mesh), method_(method)
 {}
 
-void MotionOfBlocks::add(int first, const Equations& equations, const Fields& fields)
+void MotionOfBlocks::add(int first, const Equations& equations, const Fields& fields, HandsOn hands_on)
 {
     Block& block = blocks_[first];
     const FieldSpace& fields_of = equations.space();
     const TimeSpace& space = fields_of.functions.space();
     block.n_elements = space.n_elements();
     gauss_points_ = fields_of.functions.n_gauss();
-    block.P_start = equations.end_momentum(fields, false);
-    block.P_end = equations.end_momentum(fields, true);
+    if (hands_on.at_start) block.P_start = equations.end_momentum(fields, false);
+    if (hands_on.at_end) block.P_end = equations.end_momentum(fields, true);
     std::vector<double> numbers(coordinates_.root_masses.size()), lambda(coordinates_.rows.size());
     const auto append_columns = [&](std::vector<double>& to) {
         to.resize(to.size() + coordinates_.n_X());
@@ -171,14 +171,15 @@ void MotionOfBlocks::append_block(const Block& block, bool is_first, Motion& mot
         motion.momenta.resize(motion.momenta.size() - bodies);
         motion.velocities.resize(motion.velocities.size() - bodies);
     }
-    append_end(block.X.data(), block.P_start, true, motion);
-    for (int e = 1; e < block.n_elements; ++e) {
+    const auto append_node = [&](std::size_t at, const std::vector<Matrix34>& handed_on) {
+        if (!handed_on.empty()) return append_end(block.X.data() + at, handed_on, true, motion);
         std::vector<Matrix34> P(bodies);
-        const std::size_t at = static_cast<std::size_t>(e) * n_local * n;
         for (std::size_t b = 0; b < bodies; ++b) std::copy_n(block.P.data() + at + 12 * b, 12, P[b].a);
         append_end(block.X.data() + at, P, false, motion);
-    }
-    append_end(block.X.data() + block.X.size() - n, block.P_end, true, motion);
+    };
+    append_node(0, block.P_start);
+    for (int e = 1; e < block.n_elements; ++e) append_node(static_cast<std::size_t>(e) * n_local * n, {});
+    append_node(block.X.size() - n, block.P_end);
 }
 
 void MotionOfBlocks::append_end(const double* X, const std::vector<Matrix34>& P, bool of_block,

@@ -23,8 +23,12 @@ class MotionOfBlocks {
 public:
     MotionOfBlocks(const Coordinates& coordinates, const TimeMesh& mesh, const Mixed& method);
 
+    /// Whether a block begins and ends where momenta are handed on; else its ends are those of elements.
+    struct HandsOn {
+        bool at_start = true, at_end = true;
+    };
     /// A block that begins with element `first`.
-    void add(int first, const Equations& equations, const Fields& fields);
+    void add(int first, const Equations& equations, const Fields& fields, HandsOn hands_on);
     std::size_t n_blocks() const { return blocks_.size(); }
     /// `torn`: positions may jump between blocks. Without blocks the motion is the given start alone.
     Motion take(bool torn, const State& start);
@@ -33,7 +37,7 @@ private:
     struct Block {
         std::vector<double> X, P, multipliers, rigidity,
             denominators;   ///< nodes of all elements, none shared
-        std::vector<Matrix34> P_start, P_end;
+        std::vector<Matrix34> P_start, P_end;   ///< empty: nothing is handed on there
         int n_elements = 0;
     };
     void append_multipliers(const std::vector<double>& lambda, Block& block) const;

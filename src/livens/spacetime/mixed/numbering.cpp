@@ -5,7 +5,6 @@
 #include "livens/spacetime/mixed/numbering.h"
 
 #include <algorithm>
-#include <cassert>
 
 namespace livens::mixed {
 
@@ -17,8 +16,7 @@ Numbering::Numbering(const Given& given, Mixed::Start start, Mixed::Multipliers 
     const auto at_ends = [&](int A, bool first, bool last) {
         return !((A == 0 && !first) || (A == n - 1 && !last));
     };
-    const bool opens_left = is_natural && !given.P_at_end;
-    int rows = 0;
+    const bool opens_left = is_natural && !given.P_at_last;
     const auto number = [](std::vector<int>& places, bool is_there, int& count, int how_many) {
         places.push_back(is_there ? count : -1);
         if (is_there) count += how_many;
@@ -29,16 +27,15 @@ Numbering::Numbering(const Given& given, Mixed::Start start, Mixed::Multipliers 
         const bool dX = is_natural ? at_ends(A, given.P_at_start, given.P_at_end) : X;
         number(X_, X, n_unknowns_, n_coordinates);
         number(P_, P, n_unknowns_, n_coordinates);
-        number(row_dP_, P, rows, n_coordinates);
-        number(row_dX_, dX, rows, n_coordinates);
+        number(row_dP_, P, n_equations_, n_coordinates);
+        number(row_dX_, dX, n_equations_, n_coordinates);
         if (!is_equal && A == n - 1) break;
         const bool is_torn = is_equal && std::binary_search(torn.begin(), torn.end(), A);
         if (is_torn && opens_left) number(lambda_, false, n_unknowns_, n_rows);
         number(lambda_, is_equal ? dX : true, n_unknowns_, n_rows);
         if (is_torn && !opens_left) number(lambda_, false, n_unknowns_, n_rows);
-        number(row_dlambda_, is_equal ? X : true, rows, n_rows);
+        number(row_dlambda_, is_equal ? X : true, n_equations_, n_rows);
     }
-    assert(rows == n_unknowns_);
 }
 
 }   // namespace livens::mixed

@@ -2,6 +2,7 @@
 // Which coefficients of the fields are unknown, and which rows are solved for them.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "livens/spacetime/method.h"
@@ -14,6 +15,7 @@ struct Given {
     bool P_at_start = true;
     bool X_at_end = false;
     bool P_at_end = false;
+    bool P_at_last = P_at_end;   ///< at the end of time, of which a block may be a part
 };
 
 /// The places of unknowns and rows, function of time after function of time: in each the numbers of X, P and
@@ -33,7 +35,10 @@ public:
     Numbering(const Given& given, Mixed::Start start, Mixed::Multipliers multipliers, int n_functions,
               int n_coordinates, int n_rows, const std::vector<int>& torn = {});
 
-    int size() const { return n_unknowns_; }
+    /// Unknowns and rows are as many, but at the ends of a part: then some rows or columns are empty, behind.
+    int size() const { return std::max(n_unknowns_, n_equations_); }
+    int n_unknowns() const { return n_unknowns_; }
+    int n_equations() const { return n_equations_; }
     /// First of the numbers of function A, -1 where there are none.
     int X(int A) const { return X_[A]; }
     int P(int A) const { return P_[A]; }
@@ -45,7 +50,7 @@ public:
     int n_multiplier_functions() const { return static_cast<int>(lambda_.size()); }
 
 private:
-    int n_unknowns_ = 0;
+    int n_unknowns_ = 0, n_equations_ = 0;
     std::vector<int> X_, P_, lambda_, row_dX_, row_dP_, row_dlambda_;
 };
 

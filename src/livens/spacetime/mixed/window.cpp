@@ -5,6 +5,7 @@
 #include "livens/spacetime/mixed/window.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "livens/spacetime/mixed/bases.h"
 #include "livens/spacetime/mixed/block.h"
 #include "livens/spacetime/mixed/border.h"
+#include "livens/spacetime/mixed/rank_block.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -87,6 +89,25 @@ std::vector<int> tears_of(const TimeSpace& space, const std::vector<double>& bre
 
 int shortest_block(const Mixed& method) { return basis_of(method).has_knots ? method.degree : 1; }
 
+std::vector<int> parts_of_ranks(const Model& model, const TimeMesh& mesh, int n_ranks)
+{
+    const std::vector<double> breaks = model.load_breaks();
+    const double reach = 1e-9 * (mesh.end() - mesh.start());   // as in tears_of()
+    // Those in the middle carry both of their ends along, in memory and in work.
+    constexpr double at_ends = 1.4;
+    const double all = n_ranks - 2 + 2 * at_ends;
+    std::vector<int> parts{0};
+    for (int rank = 1; rank < n_ranks; ++rank) {
+        int e = static_cast<int>(mesh.n_elements() * (rank - 1 + at_ends) / all);
+        e = std::max(e, parts.back() + 1);
+        const auto is_near = [&](double t) { return std::abs(t - mesh.ends[e]) <= reach; };
+        while (e < mesh.n_elements() && std::ranges::any_of(breaks, is_near)) ++e;
+        parts.push_back(e);
+    }
+    parts.push_back(mesh.n_elements());
+    return parts;
+}
+
 TimeSpace space_of(const Model& model, const Mixed& method, const TimeMesh& mesh, int first, int last)
 {
     const std::vector<double> ends(mesh.ends.begin() + first, mesh.ends.begin() + last + 1);
@@ -94,11 +115,11 @@ TimeSpace space_of(const Model& model, const Mixed& method, const TimeMesh& mesh
 }
 
 MixedWindow::MixedWindow(const ModelTables& tables, const TimeMesh& mesh, const Ends& ends,
-                         const Mixed& method)
+                         const Mixed& method, Ranks* ranks)
     : tables_(tables), mesh_(mesh), ends_(ends), method_(method),
       coordinates_(tables), given_{knows_positions(ends.at_start), knows_momenta(ends.at_start),
                                    knows_positions(ends.at_end), knows_momenta(ends.at_end)},
-      motion_(coordinates_, mesh, method)
+      ranks_(ranks), motion_(coordinates_, mesh, method)
 {
     for (auto [end, state] : {std::pair{&start_, &ends.start}, {&end_, &ends.end}}) {
         end->state = *state;
@@ -124,29 +145,68 @@ EndMomentum MixedWindow::momentum_of(bool X_known, const End& end) const
     return result;
 }
 
+/// What is known at the ends of the elements at hand: where they are ranks' neighbours, nothing, and no
+/// momentum is.
+Given MixedWindow::known_of_part() const
+{
+    Given given = given_;
+    const bool is_natural = method_.start == Mixed::Start::natural;
+    if (first_ > 0 && ranks_ != nullptr) {
+        given.X_at_start = false;
+        given.P_at_start = is_natural;
+    }
+    if (last_ < mesh_.n_elements() && ranks_ != nullptr) {
+        given.X_at_end = false;
+        given.P_at_end = is_natural;
+    }
+    return given;
+}
+
+std::unique_ptr<mixed::Block> MixedWindow::make_block(Equations equations)
+{
+    if (ranks_ != nullptr) return std::make_unique<RankBlock>(std::move(equations), *ranks_);
+    assert(equations.space().numbering.n_unknowns() == equations.space().numbering.n_equations());
+    return std::make_unique<mixed::Block>(std::move(equations), method_.linear_solver, border_.get());
+}
+
 bool MixedWindow::open(int first, int last, SolveReport&)
 {
-    first_ = first;
-    last_ = last;
     start_.state.t = mesh_.ends[first];
     end_.state.t = mesh_.ends[last];
-    const TimeSpace functions = space_of(*tables_.model, method_, mesh_, first, last);
+    first_ = first;
+    last_ = last;
+    if (ranks_ != nullptr) {
+        const std::vector<int> parts = parts_of_ranks(*tables_.model, mesh_, ranks_->size());
+        first_ = parts[static_cast<std::size_t>(ranks_->rank())];
+        last_ = parts[static_cast<std::size_t>(ranks_->rank()) + 1];
+    }
+    const TimeSpace functions = space_of(*tables_.model, method_, mesh_, first_, last_);
     const bool is_equal = method_.multipliers == Mixed::Multipliers::equal;
     const std::vector<int> tears =
         is_equal ? tears_of(functions, tables_.model->load_breaks()) : std::vector<int>{};
     std::vector<int> torn;
     for (const int e : tears) torn.push_back(functions.first(e));
-    const Numbering numbering(given_, method_.start, method_.multipliers, functions.size(), coordinates_.size,
+    const Given given = known_of_part();
+    const Numbering numbering(given, method_.start, method_.multipliers, functions.size(), coordinates_.size,
                               coordinates_.n_rows(), torn);
     const int gauss_points = method_.gauss_points > 0 ? method_.gauss_points : exact_points(method_);
     FieldSpace space(coordinates_, {functions, is_equal ? functions : functions.lower(), gauss_points, tears},
                      numbering, method_.start, method_.end_multiplier);
-    block_ =
-        std::make_unique<mixed::Block>(Equations(std::move(space), momentum_of(given_.X_at_start, start_),
-                                                 momentum_of(given_.X_at_end, end_)),
-                                       method_.linear_solver, border_.get());
+    const auto momentum_at = [&](int element_end, bool X_known, const End& end) {
+        const bool is_inside = element_end > first && element_end < last;   // nothing is given there
+        if (!is_inside) return momentum_of(X_known, end);
+        return EndMomentum{std::vector<Matrix34>(tables_.model->bodies().size()), {}};
+    };
+    if (ranks_ != nullptr)
+        space.functions.go_on(first_ > first ? mesh_.length(first_ - 1) : 0,
+                              last_ < last ? mesh_.length(last_) : 0);
+    EndMomentum at_start = momentum_at(first_, given_.X_at_start, start_),
+                at_end = momentum_at(last_, given_.X_at_end, end_);
+    block_ = make_block(Equations(std::move(space), std::move(at_start), std::move(at_end)));
     return true;
 }
+
+const RankBlock* MixedWindow::of_rank() const { return dynamic_cast<const RankBlock*>(block_.get()); }
 
 bool MixedWindow::start_from(const Guess& guess)
 {
@@ -156,6 +216,7 @@ bool MixedWindow::start_from(const Guess& guess)
         for (const bool last : {false, true})
             if (!border_->conditions().begin(last, guess(mesh_.ends[last ? last_ : first_]))) return false;
     fix_known();
+    if (ranks_ != nullptr) static_cast<RankBlock&>(*block_).share_guess();
     block_->begin();
     return true;
 }
@@ -173,7 +234,10 @@ void MixedWindow::take_guess(const Guess& guess)
     for (std::size_t A = 0; A < points.size(); ++A) {
         State state = guess(points[A]);
         state.t = points[A];
-        if (A == 0) fields.X0 = coordinates_.gather(state.X);
+        if (A == 0) {
+            fields.X0 = coordinates_.gather(state.X);
+            if (ranks_ != nullptr) ranks_->broadcast(0, fields.X0);   // unknowns at borders are the same
+        }
         std::vector<Matrix34> P = state.V;
         for (std::size_t b = 0; b < P.size(); ++b) P[b] = state.V[b] * tables_.model->bodies()[b].mass;
         const std::vector<double> x = coordinates_.gather(state.X), p = coordinates_.gather(P);
@@ -218,11 +282,12 @@ void MixedWindow::fix_known()
     const Numbering& n = block_->equations().space().numbering;
     Fields& fields = block_->fields();
     const int last = n.n_functions() - 1, size = coordinates_.size;
+    const Given given = known_of_part();
     if (given_.X_at_start) fields.X0 = coordinates_.gather(start_.state.X);   // x_0 is zero then
     for (const bool at_end : {false, true}) {
         const End& end = at_end ? end_ : start_;
         const int A = at_end ? last : 0;
-        if (at_end ? given_.X_at_end : given_.X_at_start) {
+        if (at_end ? given.X_at_end : given.X_at_start) {
             const std::vector<double> x = coordinates_.gather(end.state.X);
             for (int i = 0; i < size; ++i) fields.x[A * size + i] = x[i] - fields.X0[i];
         }
@@ -235,9 +300,12 @@ void MixedWindow::fix_known()
 
 AcceptedElements MixedWindow::close(const AcceptanceCriteria&, SolveReport& report)
 {
-    motion_.add(first_, block_->equations(), block_->fields());
+    const bool is_part = ranks_ != nullptr;
+    motion_.add(first_, block_->equations(), block_->fields(),
+                {!is_part || ranks_->is_first(), !is_part || ranks_->is_last()});
     report.unknowns = std::max(report.unknowns, block_->n_unknowns());
     report.factor_entries = std::max(report.factor_entries, block_->factor_entries());
+    if (is_part) return {mesh_.n_elements(), false};
     const bool is_last = ends_.is_backwards() ? first_ == 0 : last_ == mesh_.n_elements();
     return {is_last || hand_on(report) ? last_ - first_ : 0, false};
 }

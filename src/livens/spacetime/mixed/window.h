@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "livens/solvers/ranks.h"
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/march/window.h"
 #include "livens/spacetime/mixed/coordinates.h"
@@ -15,6 +16,7 @@
 namespace livens::mixed {
 class Block;
 class Border;
+class RankBlock;
 }   // namespace livens::mixed
 
 namespace livens::inline spacetime_internal {
@@ -22,6 +24,9 @@ namespace livens::inline spacetime_internal {
 /// Throws InputError for a method that makes no solvable system on this mesh: degree, gauss_points, block,
 /// knots, weights, pairings (`mixed-pairing`), conditions at the ends.
 void check_mixed(const Model& model, const Conditions& conditions, const TimeMesh& mesh, const Mixed& method);
+
+/// First elements of the parts of ranks, and the end of the last. No part begins where a load breaks.
+std::vector<int> parts_of_ranks(const Model& model, const TimeMesh& mesh, int n_ranks);
 
 /// The smallest number of elements that can be a block.
 int shortest_block(const Mixed& method);
@@ -32,7 +37,9 @@ TimeSpace space_of(const Model& model, const Mixed& method, const TimeMesh& mesh
 class MixedWindow final : public Window {
 public:
     /// References must outlive the window; `tables` are with rigidity.
-    MixedWindow(const ModelTables& tables, const TimeMesh& mesh, const Ends& ends, const Mixed& method);
+    /// `ranks`: this one solves its part of all elements; null: all that are asked for.
+    MixedWindow(const ModelTables& tables, const TimeMesh& mesh, const Ends& ends, const Mixed& method,
+                Ranks* ranks = nullptr);
     ~MixedWindow() override;
 
     bool open(int first, int last, SolveReport& report) override;
@@ -43,6 +50,8 @@ public:
     WorstResidual worst() const override;
     void describe(SolveReport& report) const override;
     Motion take_motion() override;
+    /// What the ranks have done; null without these.
+    const mixed::RankBlock* of_rank() const;
 
 private:
     /// What is known at an end of the open block.
@@ -54,6 +63,8 @@ private:
     void take_guess(const Guess& guess);
     void put_multipliers(int A, const State& state);
     void fix_known();
+    mixed::Given known_of_part() const;
+    std::unique_ptr<mixed::Block> make_block(mixed::Equations equations);
     bool hand_on(SolveReport& report);
 
     const ModelTables& tables_;
@@ -64,7 +75,8 @@ private:
     mixed::Coordinates coordinates_;
     mixed::Given given_;
     End start_, end_;
-    int first_ = 0, last_ = 0;
+    Ranks* ranks_;
+    int first_ = 0, last_ = 0;   // elements of the block: of the window, or of this rank
     std::unique_ptr<mixed::Block> block_;
     mixed::MotionOfBlocks motion_;
 };

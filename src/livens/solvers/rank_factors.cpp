@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A stretch of rows in every rank, eliminated apart from all others, and the chain of what is left of them.
+#include "livens/solvers/rank_factors.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "livens/solvers/detail/stretch.h"
+
+namespace livens::inline solvers_internal {
+
+struct RankFactors::Parts {
+    StoredRows rows;
+    Stretch stretch;
+    ChainPlaces places;
+    std::unique_ptr<RankChain> chain;
+    std::vector<double> y, missed, correction, left, joined;
+};
+
+namespace {
+
+/// Row by row, columns ascending: those of A, then those behind.
+void store(const SparseMatrix& A, const std::vector<OutsideEntry>& outside, StoredRows& rows)
+{
+    rows.starts.assign(static_cast<std::size_t>(A.size) + 1, 0);
+    for (const int row : A.rows) ++rows.starts[row + 1];
+    for (const OutsideEntry& entry : outside) ++rows.starts[entry.row + 1];
+    std::partial_sum(rows.starts.begin(), rows.starts.end(), rows.starts.begin());
+    rows.columns.resize(A.rows.size() + outside.size());
+    rows.values.resize(rows.columns.size());
+    std::vector<int> next(rows.starts.begin(), rows.starts.end() - 1);
+    const auto put = [&](int row, int column, double value) {
+        const int at = next[row]++;
+        rows.columns[at] = column;
+        rows.values[at] = value;
+    };
+    for (int c = 0; c < A.size; ++c)
+        for (int k = A.column_starts[c]; k < A.column_starts[c + 1]; ++k) put(A.rows[k], c, A.values[k]);
+    for (const OutsideEntry& entry : outside) put(entry.row, entry.column, entry.value);
+}
+
+}   // namespace
+
+RankFactors::RankFactors(Ranks& ranks) : ranks_(ranks), parts_(std::make_unique<Parts>()) {}
+RankFactors::~RankFactors() = default;
+
+bool RankFactors::factorise(const SparseMatrix& A, const std::vector<OutsideEntry>& outside, int n_columns,
+                            const ChainPlaces& places)
+{
+    Parts& p = *parts_;
+    p.places = places;
+    store(A, outside, p.rows);
+    std::vector<char> is_shared(static_cast<std::size_t>(n_columns), 0);
+    for (const int column : places.columns) is_shared[column] = 1;
+    std::vector<int> own, work(static_cast<std::size_t>(n_columns));
+    for (int c = 0; c < places.n_own; ++c)
+        if (is_shared[c] == 0) own.push_back(c);
+    if (places.from_end) std::ranges::reverse(own);
+    p.stretch.analyse(p.rows, {0, places.n_rows}, std::move(own), places.columns, work);
+    p.y.assign(static_cast<std::size_t>(A.size), 0.0);
+    const bool is_done = ranks_.all(p.stretch.eliminate(p.rows));
+    if (!is_done || places.n_unknowns == 0) return is_done;
+    if (!p.chain) p.chain = ranks_.make_chain();
+    p.left.resize(p.stretch.left().size());
+    p.joined.resize(places.columns.size());
+    return p.chain->factorise({places.n_unknowns, places.unknowns, p.stretch.left_values()});
+}
+
+void RankFactors::apply_inverse(std::span<const double> b, std::span<double> x)
+{
+    Parts& p = *parts_;
+    std::ranges::copy(b, p.y.begin());
+    p.stretch.forward(p.y.data());
+    if (p.places.n_unknowns > 0) {
+        for (std::size_t i = 0; i < p.left.size(); ++i) p.left[i] = p.y[p.stretch.left()[i]];
+        p.chain->solve(p.left, p.joined);
+        for (std::size_t i = 0; i < p.joined.size(); ++i) x[p.places.columns[i]] = p.joined[i];
+    }
+    p.stretch.backward(p.y.data(), x.data());
+}
+
+void RankFactors::solve(std::span<const double> b, std::span<double> x)
+{
+    Parts& p = *parts_;
+    apply_inverse(b, x);
+    p.missed.assign(b.begin(), b.end());
+    for (int r = 0; r < p.rows.size(); ++r)
+        for (int k = p.rows.starts[r]; k < p.rows.starts[r + 1]; ++k)
+            p.missed[r] -= p.rows.values[k] * x[p.rows.columns[k]];
+    p.correction.assign(x.size(), 0.0);
+    apply_inverse(p.missed, p.correction);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += p.correction[i];
+}
+
+long long RankFactors::entries() const { return parts_->stretch.n_entries(); }
+long long RankFactors::flops() const { return parts_->stretch.flops(); }
+int RankFactors::n_left() const { return static_cast<int>(parts_->stretch.left().size()); }
+
+}   // namespace livens::inline solvers_internal

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// LU of a sparse matrix that follows time, its rows divided among ranks.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "livens/solvers/ranks.h"
+#include "livens/solvers/sparse.h"
+
+namespace livens::inline solvers_internal {
+
+/// An entry beside those of a rank's own matrix.
+struct OutsideEntry {
+    int row, column;   ///< of the rank; columns behind those of its matrix
+    double value;
+};
+
+/// Which of a rank's columns are unknowns of the chain, too.
+struct ChainPlaces {
+    int n_rows = 0, n_own = 0;   ///< of the rank's matrix; what comes behind is empty
+    int n_unknowns = 0;          ///< of the chain
+    std::vector<int> columns;    ///< of the rank
+    std::vector<int> unknowns;   ///< of the chain, ascending
+    bool from_end = false;       ///< its own columns are eliminated from the end of time
+};
+
+/// Every rank eliminates the columns that it alone sees by its own rows, and what is left of these makes a
+/// chain (theory.md, "The chain", "Stretches"). All ranks call in the same order.
+class RankFactors {
+public:
+    explicit RankFactors(Ranks& ranks);
+    ~RankFactors();
+
+    /// The rank's rows: those of A, with columns behind A's own for `outside`. False, on all ranks: see
+    /// StaircaseLU.
+    bool factorise(const SparseMatrix& A, const std::vector<OutsideEntry>& outside, int n_columns,
+                   const ChainPlaces& places);
+    /// Of the rows b, all columns x, refined once.
+    void solve(std::span<const double> b, std::span<double> x);
+    long long entries() const;
+    long long flops() const;   ///< of the last factorisation, of products with pivot rows
+    int n_left() const;        ///< rows that went into the chain
+
+private:
+    struct Parts;
+    void apply_inverse(std::span<const double> b, std::span<double> x);
+
+    Ranks& ranks_;
+    std::unique_ptr<Parts> parts_;
+};
+
+}   // namespace livens::inline solvers_internal

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One motion by several processes of mpirun, oversubscribed, against the serial run; and what ends them.
+LIVENS_PETSC_PROGRAM is a program that was built with PETSc; without it only what is refused is looked at."""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = os.environ["LIVENS_PROGRAM"]
+HAS_PETSC = os.environ.get("LIVENS_HAS_PETSC") == "1"
+ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+               "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_btl_vader_single_copy_mechanism": "none"}
+
+LINKS = """format = 1
+gravity = [0, 0, -9.81]
+[[body]]
+name = "upper"
+shape = {{ box = [0.1, 0.1, 1] }}
+mass = 1
+position = [0, 0, -0.5]
+{upper}
+[[body]]
+name = "lower"
+shape = {{ box = [0.1, 0.1, 1] }}
+mass = 1
+position = [0, 0, -1.5]
+{lower}
+[[joint]]
+name = "pivot"
+type = "revolute"
+between = ["world", "upper"]
+at = [0, 0, 0]
+axis = [0, 1, 0]
+coordinate = "60 deg"
+rate = 0.5
+[[joint]]
+name = "elbow"
+type = "revolute"
+between = ["upper", "lower"]
+at = [0, 0, -1]
+axis = [0, 1, 0]
+coordinate = "20 deg"
+[time]
+end = {end}
+elements = {elements}
+[method]
+family = "mixed"
+degree = {degree}
+estimate = "none"
+{more}
+"""
+
+
+def scenario(end=1, elements=80, degree=1, more=""):
+    return LINKS.format(upper="", lower="", end=end, elements=elements, degree=degree, more=more)
+
+
+def between(known_at_end):
+    """From places to places or momenta that the first motion has come to."""
+    return scenario(0.5, 41, 2, "") + known_at_end
+
+
+class Distributed(unittest.TestCase):
+    def setUp(self):
+        self.place = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.place.name)
+
+    def tearDown(self):
+        self.place.cleanup()
+
+    def write(self, text, name="run.toml"):
+        (self.folder / name).write_text(text)
+        return name
+
+    def serial(self, name, output):
+        done = subprocess.run([PROGRAM, "solve", name, "-q", "-o", output], cwd=self.folder, capture_output=True, text=True)
+        self.assertIn(done.returncode, (0, 7), done.stderr)
+
+    def ranks(self, n, name, *options, program=(PROGRAM,), check=True):
+        done = subprocess.run(["mpirun", "-n", str(n), *program, "solve", name, "--distributed", *options], cwd=self.folder,
+                              env=ENVIRONMENT, capture_output=True, text=True, timeout=300)
+        if check:
+            self.assertIn(done.returncode, (0, 7), done.stdout + done.stderr)
+        return done
+
+    def assert_same(self, one, other, what, bound=1e-12):
+        import netCDF4
+        with netCDF4.Dataset(self.folder / one) as a, netCDF4.Dataset(self.folder / other) as b:
+            for name in ("element_end", "X", "P", "end_momentum", "end_velocity", "energy", "work", "linear_impulse",
+                         "action_integral", "joint_violation"):
+                x, y = a[name][:].data, b[name][:].data
+                self.assertEqual(x.shape, y.shape, name)
+                scale = max(1.0, abs(x).max())
+                self.assertLess(abs(x - y).max() / scale, bound, f"{what}: {name}")
+
+
+@unittest.skipUnless(HAS_PETSC, "built without PETSc: scripts/setup petsc, then -DLIVENS_PETSC=ON")
+class ByMpirun(Distributed):
+    def test_states_are_those_of_the_serial_run(self):
+        for case, text in {"linear": scenario(), "quadratic": scenario(1, 41, 2),
+                           "lower multipliers": scenario(1, 41, 2, 'multipliers = "lower"'),
+                           "strong": scenario(1, 41, 2, 'momentum = "strong"')}.items():
+            name = self.write(text)
+            self.serial(name, "serial.nc")
+            for n in (1, 2, 3, 4):
+                self.ranks(n, name, "-q", "-o", f"ranks{n}.nc")
+                self.assert_same("serial.nc", f"ranks{n}.nc", f"{case}, {n} ranks")
+                read = subprocess.run([PROGRAM, "info", f"ranks{n}.nc"], cwd=self.folder, capture_output=True, text=True)
+                self.assertEqual(read.returncode, 0, read.stderr)   # which verifies checksums
+
+    def test_what_is_sent_is_counted(self):
+        name = self.write(scenario(1, 240))
+        said = {n: json.loads(self.ranks(n, name, "--json").stdout)["distributed"] for n in (2, 4)}
+        self.assertIn("has 120 of 240 elements", said[2])
+        self.assertIn("has 70 of 240 elements", said[4])
+
+    def test_memory_of_a_rank_falls(self):
+        wrapper = self.folder / "peak.py"
+        wrapper.write_text("import os, sys, resource, subprocess\n"
+                           "done = subprocess.run(sys.argv[2:])\n"
+                           "peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss\n"
+                           "open(sys.argv[1] + os.environ['OMPI_COMM_WORLD_RANK'], 'w').write(str(peak))\n"
+                           "sys.exit(done.returncode)\n")
+
+        def peak(n, name):
+            self.ranks(n, name, "-q", "-o", "peak.nc", program=(sys.executable, str(wrapper), "peak", PROGRAM))
+            return max(int((self.folder / f"peak{rank}").read_text()) for rank in range(n))
+
+        small, large = self.write(scenario(0.02, 8), "small.toml"), self.write(scenario(4, 6000), "large.toml")
+        alone, four = peak(1, large) - peak(1, small), peak(4, large) - peak(4, small)
+        print(f"memory above an empty run: {alone / 1024:.0f} MiB alone, {four / 1024:.0f} MiB a rank of four")
+        self.assertLess(four, 0.35 * alone)
+
+    def children(self, program):
+        found = []
+        for entry in pathlib.Path("/proc").iterdir():
+            try:
+                if entry.name.isdigit() and b"large.toml" in (entry / "cmdline").read_bytes() \
+                        and os.path.samefile(entry / "exe", PROGRAM):
+                    found.append(int(entry.name))
+            except OSError:
+                pass
+        return found
+
+    def test_a_killed_rank_ends_all(self):
+        name = self.write(scenario(8, 20000), "large.toml")
+        with subprocess.Popen(["mpirun", "-n", "3", PROGRAM, "solve", name, "--distributed", "-q", "-o", "killed.nc"],
+                              cwd=self.folder, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as job:
+            until = time.monotonic() + 60
+            while len(ranks := self.children(job)) < 3 and time.monotonic() < until:
+                time.sleep(0.05)
+            time.sleep(1)
+            os.kill(ranks[1], signal.SIGKILL)
+            job.wait(60)
+            said = job.stderr.read().decode() + job.stdout.read().decode()
+        self.assertNotEqual(job.returncode, 0)
+        self.assertIn("killed", said.lower())
+        self.assertFalse((self.folder / "killed.nc").exists())
+
+    def test_what_cannot_be_divided_is_refused_once(self):
+        cases = {"ranks-elements": scenario(1, 2), "ranks-method": scenario(1, 40, 2, "window = 10")}
+        for code, text in cases.items():
+            done = self.ranks(4, self.write(text), "-o", "none.nc", check=False)
+            self.assertEqual(done.returncode, 3, done.stderr)
+            self.assertEqual(done.stderr.count(code), 1, done.stderr)
+            self.assertFalse((self.folder / "none.nc").exists())
+
+    def test_a_place_that_is_taken_stays(self):
+        (self.folder / "taken.nc").write_text("somebody's")
+        done = self.ranks(2, self.write(scenario(1, 8)), "-o", "taken.nc", check=False)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertEqual((self.folder / "taken.nc").read_text(), "somebody's")
+
+    def test_without_mpirun_it_is_refused(self):
+        done = subprocess.run([PROGRAM, "solve", self.write(scenario()), "--distributed"], cwd=self.folder,
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("mpirun", done.stderr)
+
+
+@unittest.skipIf(HAS_PETSC, "built with PETSc")
+class Without(Distributed):
+    def test_it_is_refused_by_name(self):
+        done = subprocess.run([PROGRAM, "solve", self.write(scenario()), "--distributed"], cwd=self.folder,
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("PETSc", done.stderr)
+
+
+if __name__ == "__main__":
+    result = unittest.main(exit=False, verbosity=2).result
+    if not HAS_PETSC:
+        print("SKIPPED: distributed (built without PETSc: scripts/setup petsc, then -DLIVENS_PETSC=ON)")
+    sys.exit(not result.wasSuccessful())

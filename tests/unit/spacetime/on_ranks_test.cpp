@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One motion by several ranks: states of the serial run, nobody forms elements of others, what is sent is as
+// long as it is said to be.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "livens/base/error.h"
+#include "livens/spacetime/on_ranks.h"
+#include <mechanisms.h>   // those of all tests
+
+namespace livens {
+namespace {
+
+struct Case {
+    std::string name;
+    Model model;
+    Problem problem;
+    TimeMesh mesh;
+    Mixed method;
+};
+
+struct Part {
+    Solution solution;
+    RankWork work;
+};
+
+std::vector<Part> solved_on(const Case& one, int n_ranks, const SolveOptions& options = {})
+{
+    std::vector<Part> parts(static_cast<std::size_t>(n_ranks));
+    run_as_ranks(n_ranks, [&](Ranks& ranks) {
+        Part& part = parts[static_cast<std::size_t>(ranks.rank())];
+        part.solution =
+            solve_on_ranks(one.model, one.problem, one.mesh, one.method, options, ranks, part.work);
+    });
+    return parts;
+}
+
+State arrival(const Model& model, double end)
+{
+    SolveOptions options;
+    options.judge = false;
+    const Solution solution = solve(model, {model.start()}, make_time_mesh(0, end, 40), Lobatto{6}, options);
+    return solution.motion.at_end(40);
+}
+
+Case make_case(const std::string& name, const Model& model, Conditions conditions, int n, const Mixed& method)
+{
+    const double end = 0.4;
+    conditions.start = model.start();
+    conditions.end = arrival(model, end);
+    return {name, model, {conditions}, make_time_mesh(0, end, n), method};
+}
+
+std::vector<Case> cases()
+{
+    Conditions of_start, of_places, mixed_ends, of_end;
+    of_places.at_start = of_places.at_end = mixed_ends.at_start = Known::positions;
+    mixed_ends.at_end = Known::momenta;
+    of_end.at_start = Known::nothing;
+    of_end.at_end = Known::state;
+    Mixed linear, quadratic, lower, strong;
+    linear.degree = 1;
+    lower.multipliers = Mixed::Multipliers::lower;
+    strong.start = Mixed::Start::strong;
+    std::vector<Case> all;
+    all.push_back(make_case("linear", tests::cubes_on_rods(0), of_start, 66, linear));
+    all.push_back(make_case("quadratic", tests::hinged_links(), of_start, 41, quadratic));
+    all.push_back(make_case("lower multipliers", tests::hinged_links(), of_start, 40, lower));
+    all.push_back(make_case("strong start", tests::hinged_links(), of_start, 40, strong));
+    all.push_back(make_case("a loop", tests::four_bar(), of_start, 40, linear));
+    all.push_back(make_case("backwards", tests::hinged_links(), of_end, 40, linear));
+    all.push_back(make_case("between places", tests::hinged_links(), of_places, 40, quadratic));
+    all.push_back(make_case("places, then momenta", tests::cubes_on_rods(0.2), mixed_ends, 50, linear));
+    Case uneven = make_case("uneven elements", tests::hinged_links(), of_start, 40, linear);
+    for (std::size_t e = 1; e < 40; ++e) uneven.mesh.ends[e] += 0.004 * std::sin(static_cast<double>(e));
+    all.push_back(uneven);
+    return all;
+}
+
+/// Largest difference of states at element ends and inside, by the largest number of the kind.
+double distance(const Motion& whole, const Motion& part, int first)
+{
+    double off = 0, sizes[2] = {1, 0};
+    const auto compare = [&](const State& a, const State& b) {
+        int kind = 0;
+        for (auto [x, y] : {std::pair{&a.X, &b.X}, {&a.V, &b.V}}) {
+            for (std::size_t i = 0; i < x->size(); ++i)
+                for (int c = 0; c < 12; ++c) {
+                    sizes[kind] = std::max(sizes[kind], std::abs((*x)[i].a[c]));
+                    off = std::max(off, std::abs((*x)[i].a[c] - (*y)[i].a[c]) / std::max(sizes[kind], 1.0));
+                }
+            ++kind;
+        }
+    };
+    for (int e = 0; e <= part.n_elements(); ++e) compare(whole.at_end(first + e), part.at_end(e));
+    for (int e = 0; e < part.n_elements(); ++e) {
+        const double t = 0.3 * part.mesh.ends[e] + 0.7 * part.mesh.ends[e + 1];
+        compare(whole.at(t), part.at(t));
+    }
+    return off;
+}
+
+TEST(OnRanks, StatesAreThoseOfTheSerialRun)
+{
+    for (const Case& one : cases()) {
+        const Solution alone = solve(one.model, one.problem, one.mesh, one.method);
+        ASSERT_TRUE(alone.report.reached_end()) << one.name << ": " << alone.report.message;
+        for (const int n : {1, 2, 3, 4, 7}) {
+            int next = 0;
+            for (const Part& part : solved_on(one, n)) {
+                const SolveReport& report = part.solution.report;
+                ASSERT_TRUE(report.reached_end()) << one.name << ", " << n << " ranks: " << report.message;
+                EXPECT_EQ(part.work.first, next);
+                EXPECT_LT(distance(alone.motion, part.solution.motion, next), 1e-12)
+                    << one.name << ", " << n << " ranks";
+                EXPECT_EQ(report.unknowns, alone.report.unknowns) << one.name;
+                next = part.work.last;
+            }
+            EXPECT_EQ(next, one.mesh.n_elements());
+        }
+    }
+}
+
+TEST(OnRanks, FiguresAreThoseOfTheSerialRun)
+{
+    const Case one = cases()[1];
+    const Solution alone = solve(one.model, one.problem, one.mesh, one.method);
+    for (const Part& part : solved_on(one, 3)) {
+        const Verdict &v = part.solution.verdict, &whole = alone.verdict;
+        EXPECT_NEAR(v.max_constraint_violation, whole.max_constraint_violation, 1e-12);
+        EXPECT_NEAR(v.max_weak_violation, whole.max_weak_violation, 1e-12);
+        EXPECT_NEAR(v.energy_drift, whole.energy_drift, 1e-11);
+        EXPECT_NEAR(v.balance.largest_kinetic, whole.balance.largest_kinetic, 1e-11);
+        EXPECT_NEAR(v.balance.reference_impulse, whole.balance.reference_impulse,
+                    1e-11 * whole.balance.reference_impulse);
+        EXPECT_NEAR(part.solution.report.guess_distance, alone.report.guess_distance, 1e-9);
+    }
+}
+
+TEST(OnRanks, NobodyFormsElementsOfOthers)
+{
+    const Case one = cases()[0];
+    for (const int n : {1, 2, 4, 8}) {
+        int formed = 0;
+        for (const Part& part : solved_on(one, n)) {
+            EXPECT_EQ(part.work.n_formed, part.work.last - part.work.first);
+            EXPECT_EQ(part.solution.motion.n_elements(), part.work.last - part.work.first);
+            formed += part.work.n_formed;
+        }
+        EXPECT_EQ(formed, one.mesh.n_elements());
+    }
+}
+
+TEST(OnRanks, WhatIsNotDividedIsRefused)
+{
+    const auto code_of = [](const Case& one, int n_ranks, const Method& method, const Time& time,
+                            const SolveOptions& options = {}) {
+        try {
+            check_ranks(one.model, one.problem, time, method, options, n_ranks);
+            return std::string();
+        } catch (const InputError& error) {
+            return error.complaint().code;
+        }
+    };
+    const Case one = cases()[0];
+    EXPECT_EQ(code_of(one, 4, one.method, one.mesh), "");
+    EXPECT_EQ(code_of(one, 67, one.method, one.mesh), "ranks-elements");
+    EXPECT_EQ(code_of(one, 2, Lobatto{4}, one.mesh), "ranks-method");
+    Mixed blocks = one.method, splines = one.method;
+    blocks.window = 8;
+    splines.basis = Mixed::Basis::bspline;
+    EXPECT_EQ(code_of(one, 2, blocks, one.mesh), "ranks-method");
+    EXPECT_EQ(code_of(one, 2, splines, one.mesh), "ranks-method");
+    SolveOptions options;
+    options.condition = true;
+    EXPECT_EQ(code_of(one, 2, one.method, one.mesh, options), "ranks-method");
+}
+
+TEST(OnRanks, WhatOneCannotDoEndsAll)
+{
+    const auto work = [](Ranks& ranks) {
+        if (ranks.rank() == 2) throw std::runtime_error("out of paper");
+        double value = 1;
+        ranks.sum({&value, 1});
+    };
+    try {
+        run_as_ranks(4, work);
+        FAIL();
+    } catch (const std::runtime_error& error) {
+        EXPECT_STREQ(error.what(), "out of paper");
+    }
+}
+
+}   // namespace
+}   // namespace livens
