@@ -23,8 +23,8 @@ std::size_t n_bodies(const Model& model)
 }
 std::size_t n_loads(const Model& model)
 {
-    return static_cast<std::size_t>(std::ranges::count_if(
-        model.loads(), [](const Load& load) { return load.type != controller_type; }));
+    return static_cast<std::size_t>(
+        std::ranges::count_if(model.loads(), [](const Load& load) { return load.type != controller_type; }));
 }
 
 std::string json_of(const Scenario& scenario, const Model& model, const ConsistentStart& assembly,

@@ -164,7 +164,8 @@ std::string text_of(const Found& found, const std::string& file)
         if (!found.model().bodies()[b].holds_states())
             summary.figure(plain(found.model().body_name(b)), words_of_body(found, b));
     for (const NamedState& state : states_in(found.model(), at.state.V))
-        summary.figure(plain(state.name), fmt::format("{:.9g}", state.value));
+        summary.figure(plain(state.name),
+                       fmt::format("{:.9g}", std::abs(state.value) <= 1e-14 * state.size ? 0 : state.value));
     for (int j = 0; at.is_found && j < static_cast<int>(found.model().joints().size()); ++j)
         summary.figure(plain(found.model().joints()[j].name), words_of_joint(found, j));
     for (const std::string& note : at.notes) summary.figure("note", plain(note));

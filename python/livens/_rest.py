@@ -166,6 +166,11 @@ class Equilibrium(_ByName):
         return float(self._found["residual"])
 
     @property
+    def states(self) -> dict[str, float]:
+        """States of controllers by ``"controller.state"``."""
+        return dict(self._found["states"])
+
+    @property
     def bodies(self) -> Parts[RestBody]:
         """All bodies by name."""
         names = self._found["bodies"]

@@ -339,8 +339,7 @@ std::string stopped_by(const Result& r)
 {
     if (r.run.events.names.empty() || r.run.events.times.back() < r.run.motion.end()) return "";
     for (const Event& event : r.scenario->model.events())
-        if (event.name == r.run.events.names.back() &&
-            event.action.does == EventAction::Does::end_motion)
+        if (event.name == r.run.events.names.back() && event.action.does == EventAction::Does::end_motion)
             return event.name;
     return "";
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Controllers of the examples against their equations, solved without livens: the numbers are those of Dormand and
-// Prince's 8(5,3) with tolerances of 1e-13, piece by piece where a law bends.
+// Controllers of the examples against their equations, solved without livens: the numbers are those of
+// Dormand and Prince's 8(5,3) with tolerances of 1e-13, piece by piece where a law bends.
 #include <gtest/gtest.h>
 
 #include <cmath>

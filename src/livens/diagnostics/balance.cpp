@@ -137,7 +137,8 @@ private:
     }
     std::vector<Matrix34> momenta_of_matter(const std::vector<Matrix34>& all, int end) const
     {
-        const auto first = all.begin() + static_cast<std::ptrdiff_t>(end) * static_cast<std::ptrdiff_t>(X_.size());
+        const auto first =
+            all.begin() + static_cast<std::ptrdiff_t>(end) * static_cast<std::ptrdiff_t>(X_.size());
         std::vector<Matrix34> P(first, first + static_cast<std::ptrdiff_t>(X_.size()));
         for (std::size_t b = 0; b < P.size(); ++b)
             if (model_.bodies()[b].holds_states()) P[b] = {};

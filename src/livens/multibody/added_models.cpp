@@ -58,7 +58,7 @@ AddedParts Model::add(const Model& other, const std::string& prefix, const Displ
     for (const Joint& joint : other.joints_) all.add_joint(relocated(joint, to));
     for (const Load& load : other.loads_) all.add_load(relocated(load, to));
     for (const Sensor& sensor : other.sensors_) all.add_sensor(relocated(sensor, to));
-    for (const Event& event : other.events_) 
+    for (const Event& event : other.events_)
         all.add_event(relocated(event, to, [&](int j) { return j + first.joint; }));
     for (const Sampling& sampling : other.samplings_) all.add_sampling(relocated(sampling, to));
     *this = std::move(all);

@@ -28,9 +28,9 @@ struct Body {
     /// 0: it is none.
     double state_speed = 0;
     std::vector<HeldState> states{};   ///< three at most
-    Matrix4 mass{};          ///< m (P7)
-    Matrix34 X{};            ///< configuration at the start
-    Matrix34 V{};            ///< dX/dt at the start
+    Matrix4 mass{};                    ///< m (P7)
+    Matrix34 X{};                      ///< configuration at the start
+    Matrix34 V{};                      ///< dX/dt at the start
     /// The directors as the user counts them are [d1 d2 d3] stretch: symmetric, the identity unless they are
     /// skew (P4). X, m and all places on the body are in the orthonormal triad.
     Matrix3 stretch = identity<3>();

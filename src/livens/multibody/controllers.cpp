@@ -2,6 +2,7 @@
 #include "livens/multibody/controllers.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -80,7 +81,8 @@ Load observer(const std::string& name, const std::vector<LawCoordinate>& coordin
     load.name = name;
     load.type = controller_type;
     Observed observed;
-    for (const LawCoordinate& q : coordinates) observed.coordinates.emplace_back(q.coordinate, q.at_stated, X);
+    for (const LawCoordinate& q : coordinates)
+        observed.coordinates.emplace_back(q.coordinate, q.at_stated, X);
     std::vector<int> bodies;
     for (const LoadCoordinate& coordinate : observed.coordinates)
         for (const int body : coordinate.bodies())
@@ -95,13 +97,19 @@ Load observer(const std::string& name, const std::vector<LawCoordinate>& coordin
     load.is_smooth = true;
     const auto all = std::make_shared<const Observed>(std::move(observed));
     for (const LawReading& reading : readings)
-        load.readings.push_back({reading.name, reading.unit,
-                                 [all, value = reading.value](const LoadArguments& arguments) {
-                                     return all->read(value, arguments);
-                                 }});
+        load.readings.push_back(
+            {reading.name, reading.unit, [all, value = reading.value](const LoadArguments& arguments) {
+                 return all->read(value, arguments);
+             }});
     load.forces = [](const LoadArguments&, LoadForces&) {};
     load.forces.record = [](LoadTape&, const TapeNumber&) {};
     return load;
+}
+
+bool acts_on_states(const Model& model, const Load& load)
+{
+    const int body = load.bodies[0] == world ? load.bodies[1] : load.bodies[0];
+    return body != world && model.bodies()[static_cast<std::size_t>(body)].holds_states();
 }
 
 std::vector<NamedState> states_in(const Model& model, std::span<const Matrix34> V)
@@ -109,7 +117,8 @@ std::vector<NamedState> states_in(const Model& model, std::span<const Matrix34> 
     std::vector<NamedState> all;
     for (std::size_t b = 0; b < model.bodies().size(); ++b)
         for (const HeldState& state : model.bodies()[b].states)
-            all.push_back({state.name, dot(state.along, V[b].column(0)) / state.unit});
+            all.push_back({state.name, dot(state.along, V[b].column(0)) / state.unit,
+                           model.bodies()[b].state_speed / state.unit});
     return all;
 }
 
@@ -126,8 +135,18 @@ void check_change(const StateChange& change, const std::vector<Body>& bodies, co
     if (is_load && loads[static_cast<std::size_t>(change.load)].readings.size() == change.states.size() &&
         std::ranges::all_of(change.states, is_state))
         return;
-    throw InputError({"controller-state", path, "a change of states needs a reading for each state", "", "", "",
-                      ""});
+    throw InputError(
+        {"controller-state", path, "a change of states needs a reading for each state", "", "", "", ""});
+}
+
+void check_sampling(const Sampling& sampling, const std::vector<Body>& bodies, const std::vector<Load>& loads)
+{
+    const std::string path = "controller[" + sampling.name + "]";
+    if (!(sampling.every > 0) || !std::isfinite(sampling.every) || !std::isfinite(sampling.first) ||
+        !std::isfinite(sampling.last))
+        throw InputError({"controller-every", path + ".every",
+                          "the period of a sampled controller must be positive", "", "", "", ""});
+    check_change(sampling.change, bodies, loads, path);
 }
 
 }   // namespace livens

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// States of controllers, z' = f(t, q, q', z): each is the velocity of a point mass along an axis, on which f acts
-// as a force. Elements solve it as they solve free motion, by Gauss's collocation, and so to the order of all
-// else (docs/theory.md, "States").
+// States of controllers, z' = f(t, q, q', z): each is the velocity of a point mass along an axis, on which f
+// acts as a force. Elements solve it as they solve free motion, by Gauss's collocation, and so to the order
+// of all else (docs/theory.md, "States").
 #pragma once
 
 #include <span>
@@ -18,8 +18,8 @@ struct ControllerState {
     double size = 1;   ///< that is typical of it: errors are relative to it
 };
 
-/// How states are scaled: one of its size moves its body at this speed. Neither is seen in what is solved, but
-/// for rounding and what errors are compared with.
+/// How states are scaled: one of its size moves its body at this speed. Neither is seen in what is solved,
+/// but for rounding and what errors are compared with.
 struct StateScale {
     double mass = 1;    ///< kg
     double speed = 1;   ///< m/s
@@ -45,13 +45,18 @@ Load observer(const std::string& name, const std::vector<LawCoordinate>& coordin
 struct NamedState {
     std::string name;   ///< "pid.i"
     double value = 0;
+    double size = 1;   ///< that is typical of it
 };
 /// All states, by the velocities of all bodies of the model.
 std::vector<NamedState> states_in(const Model& model, std::span<const Matrix34> V);
 
-/// Throws InputError (`controller-state`) at path: no such load, or not a reading for each state, or what is no
-/// state of a body that holds some.
+/// Throws InputError (`controller-state`) at path: no such load, or not a reading for each state, or what is
+/// no state of a body that holds some.
 void check_change(const StateChange& change, const std::vector<Body>& bodies, const std::vector<Load>& loads,
                   const std::string& path);
+
+/// The same of a controller that is asked at instants; also `controller-every` for a period that is none.
+void check_sampling(const Sampling& sampling, const std::vector<Body>& bodies,
+                    const std::vector<Load>& loads);
 
 }   // namespace gnu::visibility("default")]]livens

@@ -168,9 +168,6 @@ struct LoadLine {
     std::vector<BodyPoint> over{};
 };
 
-/// Load::type of what changes states of controllers, or tells them.
-inline constexpr std::string_view controller_type = "controller";
-
 struct Load;
 
 /// When it acts: instants that are stated stand among its breaks.

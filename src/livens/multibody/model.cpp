@@ -366,11 +366,7 @@ int Model::add_event(Event event)
 int Model::add_sampling(Sampling sampling)
 {
     check_name(samplings_, sampling.name, "controller");
-    const std::string path = "controller[" + sampling.name + "]";
-    if (!(sampling.every > 0) || !std::isfinite(sampling.every) || !std::isfinite(sampling.first) ||
-        !std::isfinite(sampling.last))
-        refuse("controller-every", path + ".every", "the period of a sampled controller must be positive");
-    check_change(sampling.change, bodies_, loads_, path);
+    check_sampling(sampling, bodies_, loads_);
     has_.events = true;
     samplings_.push_back(std::move(sampling));
     changed();
@@ -394,12 +390,6 @@ State Model::start() const
         state.V.push_back(body.V);
     }
     return state;
-}
-
-bool acts_on_states(const Model& model, const Load& load)
-{
-    const int body = load.bodies[0] == world ? load.bodies[1] : load.bodies[0];
-    return body != world && model.bodies()[static_cast<std::size_t>(body)].holds_states();
 }
 
 Matrix34 weight(const Body& body, const Vector3& gravity)

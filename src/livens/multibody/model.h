@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "livens/base/linear.h"
@@ -183,6 +184,8 @@ struct ActingModel {
 };
 ActingModel acting_at(const Model& model, double t);
 
+/// Load::type of what changes states of controllers, or tells them.
+inline constexpr std::string_view controller_type = "controller";
 /// Whether it does no more than change states of controllers.
 bool acts_on_states(const Model& model, const Load& load);
 

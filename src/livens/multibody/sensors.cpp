@@ -8,6 +8,7 @@
 #include "livens/base/error.h"
 #include "livens/multibody/joints.h"
 #include "livens/multibody/loads.h"
+#include "livens/multibody/model.h"
 
 namespace livens {
 

@@ -155,21 +155,22 @@ FreeWay free_way(Search& search, const RestPoint& here, const Values& step)
 }
 
 /// Down the work of the forces to where they are balanced, or a stop is met.
-Outcome descend(Search& search, const EquilibriumOptions& options, RestPoint& here, int& iterations, int& met)
+SearchOutcome descend(Search& search, const EquilibriumOptions& options, RestPoint& here, int& iterations,
+                      int& met)
 {
     double radius = largest_step;
     int n_unrestored = 0;
     const int most = search.deepest().stop < 0 ? most_unrestored : most_on_the_way;
     search.add_stiffness(here);
     while (here.residual() > balance_tolerance) {
-        if (options.goes_on && !options.goes_on()) return Outcome::cancelled;
-        if (iterations == options.max_iterations) return Outcome::limit;
-        if (radius < smallest_step) return Outcome::stuck;
+        if (options.goes_on && !options.goes_on()) return SearchOutcome::cancelled;
+        if (iterations == options.max_iterations) return SearchOutcome::limit;
+        if (radius < smallest_step) return SearchOutcome::stuck;
         ++iterations;
         Values step = step_within(search, here, radius);
         const FreeWay way = free_way(search, here, step);
         met = way.stop;
-        if (met >= 0 && way.part < no_way) return Outcome::met_stop;
+        if (met >= 0 && way.part < no_way) return SearchOutcome::met_stop;
         if (met >= 0) step = scaled(way.part, step);
         const double size = search.size_of(here, step);
         Values restored = step;
@@ -184,14 +185,14 @@ Outcome descend(Search& search, const EquilibriumOptions& options, RestPoint& he
         }
         n_unrestored = is_unrestored(here) ? n_unrestored + 1 : 0;
         here = std::move(there);
-        if (met >= 0) return Outcome::met_stop;
+        if (met >= 0) return SearchOutcome::met_stop;
         search.add_stiffness(here);
-        if (n_unrestored == most) return Outcome::unrestored;
+        if (n_unrestored == most) return SearchOutcome::unrestored;
         radius = share < 0.25  ? 0.5 * size
                  : share > 0.7 ? std::min(largest_step, 2 * std::max(radius, size))
                                : radius;
     }
-    return Outcome::balanced;
+    return SearchOutcome::balanced;
 }
 
 /// Newton's steps, whatever the signs of the stiffness, as long as they halve the residual.
@@ -210,11 +211,11 @@ void polish(Search& search, RestPoint& here, int& iterations)
     }
 }
 
-std::string why_not(const Model& model, const Search& search, const RestPoint& here, Outcome outcome,
+std::string why_not(const Model& model, const Search& search, const RestPoint& here, SearchOutcome outcome,
                     const Equilibrium& result)
 {
-    if (outcome == Outcome::cancelled) return "cancelled";
-    if (outcome == Outcome::no_numbers) {
+    if (outcome == SearchOutcome::cancelled) return "cancelled";
+    if (outcome == SearchOutcome::no_numbers) {
         const int load = search.bad_load(here.X);
         return load < 0 ? "the forces are not finite at the start" : not_finite(model.loads()[load]);
     }
@@ -224,9 +225,9 @@ std::string why_not(const Model& model, const Search& search, const RestPoint& h
                                  : to_text(result.acceleration, 3) + " m/s^2";
     const std::string still = body + " still accelerates by " + rate;
     switch (outcome) {
-    case Outcome::unrestored:
+    case SearchOutcome::unrestored:
         return still + ", and nothing restores it: hold it by a joint or a spring";
-    case Outcome::stuck:
+    case SearchOutcome::stuck:
         return still + ", but no step, however short, goes with the forces: start nearer to the equilibrium";
     default:
         return still + " after " + std::to_string(result.iterations) +
@@ -251,7 +252,7 @@ struct Stage {
     ConsistentStart closed;
     Search search;
     RestPoint here{};
-    Outcome outcome = Outcome::no_numbers;
+    SearchOutcome outcome = SearchOutcome::no_numbers;
 
     Stage(const Model& model, const RestingStops& stops, std::vector<int> which, const State& start,
           StartPolicy policy)
@@ -266,21 +267,21 @@ struct Stage {
         if (search.look(closed.start.X, here))
             outcome = has_states() ? run_with_states(options, iterations, met)
                                    : descend(search, options, here, iterations, met);
-        if (outcome == Outcome::stuck && here.residual() <= equilibrium_tolerance)
-            outcome = Outcome::balanced;
-        if (outcome == Outcome::balanced && !has_states()) polish(search, here, iterations);
-        if (outcome != Outcome::no_numbers) search.look(std::vector<Matrix34>(here.X), here);
+        if (outcome == SearchOutcome::stuck && here.residual() <= equilibrium_tolerance)
+            outcome = SearchOutcome::balanced;
+        if (outcome == SearchOutcome::balanced && !has_states()) polish(search, here, iterations);
+        if (outcome != SearchOutcome::no_numbers) search.look(std::vector<Matrix34>(here.X), here);
         return met;
     }
     bool has_states() const { return std::ranges::any_of(held.whole->bodies(), &Body::holds_states); }
     /// Where that is beyond a stop, it is met.
-    Outcome run_with_states(const EquilibriumOptions& options, int& iterations, int& met)
+    SearchOutcome run_with_states(const EquilibriumOptions& options, int& iterations, int& met)
     {
-        const Outcome found = rest_with_states(search, options, here, iterations);
+        const SearchOutcome found = rest_with_states(search, options, here, iterations);
         const Search::Depth deepest = search.deepest();
-        if (found != Outcome::balanced || deepest.stop < 0 || !(deepest.depth > passed)) return found;
+        if (found != SearchOutcome::balanced || deepest.stop < 0 || !(deepest.depth > passed)) return found;
         met = deepest.stop;
-        return Outcome::met_stop;
+        return SearchOutcome::met_stop;
     }
     Pushes pushes() const
     {
@@ -300,16 +301,16 @@ std::unique_ptr<Stage> search_with_stops(const Model& model, const RestingStops&
     for (int changes = 0;; ++changes) {
         const int met = now->run(options, result.iterations);
         std::vector<int> closed = now->held.closed;
-        if (now->outcome == Outcome::met_stop) {
+        if (now->outcome == SearchOutcome::met_stop) {
             closed.push_back(met);
         } else {
-            if (now->outcome != Outcome::balanced || closed.empty()) return now;
+            if (now->outcome != SearchOutcome::balanced || closed.empty()) return now;
             const int release = RestingStops::to_release(now->pushes());
             if (release < 0) return now;
             closed.erase(closed.begin() + release);
         }
         if (changes == most) {
-            now->outcome = Outcome::limit;
+            now->outcome = SearchOutcome::limit;
             result.message = "which stops hold the bodies is not found in " + std::to_string(most) +
                              " changes of them: start nearer to the equilibrium";
             return now;
@@ -375,7 +376,7 @@ Equilibrium find_equilibrium(const Model& the_model, const State& start, const E
                                    static_cast<std::ptrdiff_t>(std::min(search.state().angles.size(),
                                                                         UnwrappedAngles(model).size())));
     result.coordinates = search.coordinates();
-    result.is_found = stage->outcome == Outcome::balanced;
+    result.is_found = stage->outcome == SearchOutcome::balanced;
     for (const int k : stage->held.closed)
         result.closed_stops.push_back(static_cast<int>(stops.joint_index(k)));
     add_reactions(*stage, result);

@@ -18,17 +18,21 @@ struct EquilibriumOptions {
     std::function<bool()> goes_on{};   ///< asked before each step; false: cancelled
 };
 
-struct Equilibrium {
+/// Who accelerates most.
+struct UnbalancedBody {
+    double residual = 0;   ///< largest unbalanced force on a body over the largest forces on one, in the mass
+                           ///< metric and as far as joints leave it free
+    int worst_body = -1;   ///< the body of that; -1: none
+    double acceleration = 0, angular_acceleration = 0;   ///< of its reference point, from rest
+};
+
+struct Equilibrium : UnbalancedBody {
     bool is_found = false;
     std::string message;   ///< where it was not found: why, and which body still accelerates
     State state;           ///< V = 0, but of what holds states; found or not, the last one
     int degrees_of_freedom = 0;
-    int iterations = 0;    ///< steps, those that were taken back included
-    double residual = 0;   ///< largest unbalanced force on a body over the largest forces on one, in the mass
-                           ///< metric and as far as joints leave it free
-    int worst_body = -1;   ///< the body of that; -1: none
-    double acceleration = 0, angular_acceleration = 0;   ///< of that body's reference point, from rest
-    std::vector<double> multipliers;                     ///< of all rows, least where joints are redundant
+    int iterations = 0;                ///< steps, those that were taken back included
+    std::vector<double> multipliers;   ///< of all rows, least where joints are redundant
     std::vector<bool> joint_is_unique;
     std::vector<SharedComponents> shared;           ///< of each joint that is not
     std::vector<std::vector<double>> coordinates;   ///< of each joint, as it counts them: turns included

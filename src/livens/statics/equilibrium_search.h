@@ -16,7 +16,7 @@ namespace livens::inline statics_internal {
 
 inline constexpr double largest_step = 0.5;   // lengths of the model, rad
 
-enum class Outcome { balanced, met_stop, no_numbers, unrestored, stuck, limit, cancelled };
+enum class SearchOutcome { balanced, met_stop, no_numbers, unrestored, stuck, limit, cancelled };
 
 /// One configuration at rest. Of those that are searched from also the principal stiffnesses.
 struct RestPoint {

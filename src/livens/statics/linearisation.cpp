@@ -158,9 +158,8 @@ Linearisation linearise(const Model& the_model, const State& state, Side side)
     TwistTerms mass;
     SmallMotions(at.tables, at.state, side).add_mass(mass);
     const FreeMotions& free = statics.free;
-    DenseMatrix C = free.reduced(at.tables, statics.damping),
-                K = free.reduced(at.tables, statics.stiffness), M = free.reduced(at.tables, mass),
-                twists = twists_of(at.tables, at.state, free);
+    DenseMatrix C = free.reduced(at.tables, statics.damping), K = free.reduced(at.tables, statics.stiffness),
+                M = free.reduced(at.tables, mass), twists = twists_of(at.tables, at.state, free);
     add_rotors(model, linear.state.X, twists, M);
     const StateDirections directions(at.tables, free);
     if (!directions.is_empty()) {
@@ -288,7 +287,9 @@ void add_states(const Linearisation& linear, const DenseMatrix& L, DenseMatrix& 
     for (int k = 0; k < n_z; ++k) {
         const auto of = static_cast<std::size_t>(k);
         Values pulls(static_cast<std::size_t>(n));
-        for (int i = 0; i < n; ++i) pulls[static_cast<std::size_t>(i)] = -z.by_states[of + static_cast<std::size_t>(i * n_z)] * z.scale[of];
+        for (int i = 0; i < n; ++i)
+            pulls[static_cast<std::size_t>(i)] =
+                -z.by_states[of + static_cast<std::size_t>(i * n_z)] * z.scale[of];
         if (n > 0) std::ranges::copy(cholesky_solution(L, pulls), A.column(2 * n + k).begin() + n);
         for (int j = 0; j < n; ++j) {
             A(2 * n + k, j) = -z.by_q[static_cast<std::size_t>(k * n + j)] / z.scale[of];

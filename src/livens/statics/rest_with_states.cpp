@@ -20,24 +20,26 @@ class RestWithStates {
 public:
     RestWithStates(Search& search, const EquilibriumOptions& options) : search_(search), options_(options) {}
 
-    Outcome run(RestPoint& here, int& iterations)
+    SearchOutcome run(RestPoint& here, int& iterations)
     {
         constexpr double met = 1e-13, near = 1e-9, least_share = 1e-6;
         double before = std::numeric_limits<double>::infinity();
         for (;;) {
-            if (options_.goes_on && !options_.goes_on()) return Outcome::cancelled;
-            if (iterations == options_.max_iterations) return Outcome::limit;
+            if (options_.goes_on && !options_.goes_on()) return SearchOutcome::cancelled;
+            if (iterations == options_.max_iterations) return SearchOutcome::limit;
             ++iterations;
             const DenseMatrix tangent = tangent_at(here);
             const Step whole = step_of(here, here, tangent);
-            if (!std::isfinite(whole.size)) return Outcome::unrestored;
+            if (!std::isfinite(whole.size)) return SearchOutcome::unrestored;
             // As far as rounding lets it go.
-            if (whole.size <= met || (whole.size <= near && !(whole.size < 0.5 * before))) return Outcome::balanced;
+            if (whole.size <= met || (whole.size <= near && !(whole.size < 0.5 * before)))
+                return SearchOutcome::balanced;
             before = whole.size;
             double share = whole.moved > largest_step ? largest_step / whole.moved : 1;
             RestPoint there;
             for (;; share *= 0.5) {
-                if (share < least_share) return whole.size <= near ? Outcome::balanced : Outcome::stuck;
+                if (share < least_share)
+                    return whole.size <= near ? SearchOutcome::balanced : SearchOutcome::stuck;
                 if (go(here, whole, share, there) &&
                     step_of(there, here, tangent).size <= (1 - 0.25 * share) * whole.size)
                     break;
@@ -61,10 +63,11 @@ private:
         const DenseMatrix K = free.reduced(search_.tables(), at.statics->stiffness),
                           C = free.reduced(search_.tables(), at.statics->damping);
         DenseMatrix all = K;
-        for (const auto& [E, A] : {std::pair(&states.held, &C), std::pair(&states.idle, (const DenseMatrix*)nullptr)})
+        for (const auto& [E, A] :
+             {std::pair(&states.held, &C), std::pair(&states.idle, (const DenseMatrix*)nullptr)})
             for (int k = 0; k < E->cols; ++k) {
-                const Values e(E->column(k).begin(), E->column(k).end()), Ke = product(K, e),
-                             Ae = A != nullptr ? product(*A, e) : e;
+                const Values e(E->column(k).begin(), E->column(k).end()),
+                    Ke = product(K, e), Ae = A != nullptr ? product(*A, e) : e;
                 for (int j = 0; j < all.cols; ++j)
                     for (int i = 0; i < all.rows; ++i) {
                         const auto r = static_cast<std::size_t>(i);
@@ -108,8 +111,8 @@ private:
 
 }   // namespace
 
-Outcome rest_with_states(Search& search, const EquilibriumOptions& options, RestPoint& here,
-                         int& iterations)
+SearchOutcome rest_with_states(Search& search, const EquilibriumOptions& options, RestPoint& here,
+                               int& iterations)
 {
     return RestWithStates(search, options).run(here, iterations);
 }

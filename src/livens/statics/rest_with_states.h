@@ -8,7 +8,7 @@
 namespace livens::inline statics_internal {
 
 /// From `here`, where it ends; `iterations` count on.
-Outcome rest_with_states(Search& search, const EquilibriumOptions& options, RestPoint& here,
-                         int& iterations);
+SearchOutcome rest_with_states(Search& search, const EquilibriumOptions& options, RestPoint& here,
+                               int& iterations);
 
 }   // namespace livens::inline statics_internal

@@ -59,9 +59,8 @@ DenseMatrix idle_directions(const Linearisation& linear)
     const int n = linear.n, n_z = z.n();
     if (n_z == 0) return null_directions(square(linear, linear.K), linear.rounding);
     // Rounding of columns of C is made alike that of K.
-    const double per_rate = linear.damping_rounding > 0 && linear.rounding > 0
-                                ? linear.rounding / linear.damping_rounding
-                                : 1;
+    const double per_rate =
+        linear.damping_rounding > 0 && linear.rounding > 0 ? linear.rounding / linear.damping_rounding : 1;
     DenseMatrix all(n + n_z, n + n_z);
     for (int i = 0; i < n; ++i) {
         for (int j = 0; j < n; ++j) all(i, j) = linear.K[static_cast<std::size_t>(i * n + j)];
@@ -88,15 +87,15 @@ Roots general_roots(const Linearisation& linear)
     const LinearStates& z = linear.states;
     const int n_z = z.n(), size = 2 * n + n_z;
     DenseMatrix A(size, size);   // on (unit q, q', s z), whose entries are of one size
-    const auto by_states = n > 0 ? cholesky_solution(L, transpose({n_z, n, z.by_states.data()})) : DenseMatrix();
+    const auto by_states =
+        n > 0 ? cholesky_solution(L, transpose({n_z, n, z.by_states.data()})) : DenseMatrix();
     for (int k = 0; k < n_z; ++k) {
         for (int i = 0; i < n; ++i) {
             A(n + i, 2 * n + k) = -by_states(i, k);
             A(2 * n + k, i) = -z.by_q[static_cast<std::size_t>(k * n + i)] / unit;
             A(2 * n + k, n + i) = -z.by_rates[static_cast<std::size_t>(k * n + i)];
         }
-        for (int j = 0; j < n_z; ++j)
-            A(2 * n + k, 2 * n + j) = -z.own[static_cast<std::size_t>(k * n_z + j)];
+        for (int j = 0; j < n_z; ++j) A(2 * n + k, 2 * n + j) = -z.own[static_cast<std::size_t>(k * n_z + j)];
     }
     for (int j = 0; j < n; ++j) {
         // Scaled by the fastest rate, positions and rates are of one size, so the general solver balances
@@ -107,7 +106,8 @@ Roots general_roots(const Linearisation& linear)
     const GeneralSpectrum spectrum = general_spectrum(A);
     const DenseMatrix idle = idle_directions(linear);
     Roots roots;
-    for (int k = 0; k < idle.cols; ++k) roots.push_back({{}, {idle.column(k).begin(), idle.column(k).begin() + n}});
+    for (int k = 0; k < idle.cols; ++k)
+        roots.push_back({{}, {idle.column(k).begin(), idle.column(k).begin() + n}});
     for (int i = 0; i < size; ++i) {
         Complex s = spectrum.values[i];
         // One root of each conjugate pair. Zeros were taken from K, as rounding parts a double zero into a

@@ -70,8 +70,8 @@ std::string with_motor(double inductance, const std::string& time, const std::st
 
 using Numbers = std::array<double, 5>;   // q, q', i, d, c
 
-/// Of that pendulum, whose motor has 0.05 H: angle, rate and states at 2 s by Dormand and Prince's 8(5,3), with
-/// tolerances of 1e-13.
+/// Of that pendulum, whose motor has 0.05 H: angle, rate and states at 2 s by Dormand and Prince's 8(5,3),
+/// with tolerances of 1e-13.
 constexpr Numbers at_2_s{0.416244215716469, -0.0199781038903, 0.265993022070594, 0.0834517580457937,
                          7.80900567157475};
 /// With 0.2 H and a filter of 0.1 s, at 1 s.
@@ -97,7 +97,10 @@ double distance(const Numbers& a, const Numbers& b)
 }
 
 class OrdersOfStates : public testing::TestWithParam<int> {};
-std::string degree_of(const testing::TestParamInfo<int>& degree) { return "p" + std::to_string(degree.param); }
+std::string degree_of(const testing::TestParamInfo<int>& degree)
+{
+    return "p" + std::to_string(degree.param);
+}
 
 TEST_P(OrdersOfStates, AreThoseOfMotions)
 {
@@ -139,7 +142,8 @@ TEST(Controllers, HaveTheAccuracyThatIsAskedFor)
     EXPECT_EQ(all.kinetic.back(), 0.5 * dot(own, last.V[0]));
 }
 
-/// With an inductance of 1e-6 H its current follows within a microsecond: i = (u - 0.4 w)/2 but for 1e-6 of it.
+/// With an inductance of 1e-6 H its current follows within a microsecond: i = (u - 0.4 w)/2 but for 1e-6 of
+/// it.
 TEST(Controllers, ThatAreStiffAreLeftToRadau)
 {
     const Scenario scenario = scenario_of(with_motor(1e-6, "end = 2\naccuracy = 1e-10"));
@@ -175,8 +179,7 @@ TEST(Controllers, ThatAreSampledAreTheirRecursion)
     double i = 0, e = 0.5, farthest = 0;
     for (int k = 0; k <= 200; ++k) {
         const State state = motion.at(0.01 * k);
-        const double q =
-            coordinate_value(scenario.model.joints()[0].coordinates[0].coordinate, state.X);
+        const double q = coordinate_value(scenario.model.joints()[0].coordinates[0].coordinate, state.X);
         const double u = 20 * (0.5 - q) + 15 * i + 3 * ((0.5 - q) - e) / 0.01;
         i += 0.01 * (0.5 - q);
         e = 0.5 - q;
@@ -211,7 +214,8 @@ TEST(Controllers, AreAtRestWithTheirBodies)
     const Linearisation linear = linearise(scenario.model, rest.state);
     ASSERT_EQ(linear.n, 1);
     const double inertia = 0.02 + 2 * 0.16, stiffness = 2 * 9.81 * 0.4 * std::cos(0.5);
-    const StateMatrices matrices = state_matrices(scenario.model, linear, {"pin.angle"}, {"pin.angle", "pid.c"});
+    const StateMatrices matrices =
+        state_matrices(scenario.model, linear, {"pin.angle"}, {"pin.angle", "pid.c"});
     ASSERT_EQ(matrices.n_states, 5);
     const auto trace = [&] {
         double sum = 0;
@@ -221,7 +225,8 @@ TEST(Controllers, AreAtRestWithTheirBodies)
     EXPECT_NEAR(trace(), -1 / 0.02 - 2 / 0.05, 1e-9);
     // Its characteristic polynomial vanishes at each root.
     const auto residual = [&](std::complex<double> s) {
-        const std::complex<double> controller = -60.0 - 40.0 / s - 8.0 / 0.02 * (1.0 - 1.0 / (1.0 + 0.02 * s)),
+        const std::complex<double> controller =
+                                       -60.0 - 40.0 / s - 8.0 / 0.02 * (1.0 - 1.0 / (1.0 + 0.02 * s)),
                                    c = (controller - 0.4 * s) / (0.05 * s + 2.0);
         return (inertia * s * s + stiffness - 0.4 * c) / (inertia * s * s + stiffness);
     };
@@ -263,14 +268,16 @@ TEST(Controllers, ComeAlongWithParts)
 /// An event empties an integral once it is full: a saw tooth with known teeth.
 TEST(Controllers, AreSetByEvents)
 {
-    const Scenario scenario = scenario_of(pendulum("states = { i = \"2\" }\n",
-                                                   "end = 1\naccuracy = 1e-10\n[[event]]\nname = \"full\"\nwhen = "
-                                                   "\"pid.i > 0.3\"\nset = { \"pid.i\" = \"pid.i - 0.3\" }",
-                                                   "pid.i"));
+    const Scenario scenario =
+        scenario_of(pendulum("states = { i = \"2\" }\n",
+                             "end = 1\naccuracy = 1e-10\n[[event]]\nname = \"full\"\nwhen = "
+                             "\"pid.i > 0.3\"\nset = { \"pid.i\" = \"pid.i - 0.3\" }",
+                             "pid.i"));
     const SolvedScenario s = solve_scenario(scenario, scenario.options, scenario.prepared);
     ASSERT_TRUE(s.solution.report.converged()) << s.solution.report.message;
     ASSERT_EQ(s.solution.events.size(), 6u);
-    for (int k = 0; k < 6; ++k) EXPECT_NEAR(s.solution.events[static_cast<std::size_t>(k)].t, 0.15 * (k + 1), 1e-12);
+    for (int k = 0; k < 6; ++k)
+        EXPECT_NEAR(s.solution.events[static_cast<std::size_t>(k)].t, 0.15 * (k + 1), 1e-12);
     const Motion& motion = s.solution.motion;
     EXPECT_NEAR(states_in(scenario.model, motion.at_end(motion.n_elements()).V)[0].value, 0.2, 1e-11);
 }
@@ -293,14 +300,15 @@ TEST(Controllers, AreRefusedByName)
     EXPECT_EQ(code(good + "every = -1\n"), "controller-every");
     EXPECT_EQ(code(good + "first = 1\n"), "controller-every");
     EXPECT_EQ(code("inputs = { q = \"pin.length\" }\nstates = { i = \"q\" }\n", "pid.i"), "joint-coordinate");
-    EXPECT_EQ(code("inputs = { q = \"pin.angle\", w = \"pin.angle_rate\" }\nstates = { i = \"q\" }\n", "pid.i"),
-              "input-unused");
+    EXPECT_EQ(
+        code("inputs = { q = \"pin.angle\", w = \"pin.angle_rate\" }\nstates = { i = \"q\" }\n", "pid.i"),
+        "input-unused");
 }
 
 TEST(Controllers, ThatAreSampledHaveNoRest)
 {
-    const Scenario scenario = scenario_of(
-        pendulum("inputs = { q = \"pin.angle\" }\nevery = 0.1\nstates = { i = \"i + q\" }\n", "end = 1", "pid.i"));
+    const Scenario scenario = scenario_of(pendulum(
+        "inputs = { q = \"pin.angle\" }\nevery = 0.1\nstates = { i = \"i + q\" }\n", "end = 1", "pid.i"));
     try {
         find_equilibrium(scenario.model, scenario.model.start());
         ADD_FAILURE();

@@ -42,6 +42,7 @@ const std::vector<std::string> documents{file_text("tests/fuzz/corpus/every_key_
                                          file_text("tests/fuzz/corpus/every_key_of_mechanisms.toml"),
                                          file_text("tests/fuzz/corpus/every_key_of_laws.toml"),
                                          file_text("tests/fuzz/corpus/every_key_of_events.toml"),
+                                         file_text("tests/fuzz/corpus/every_key_of_controllers.toml"),
                                          file_text("tests/fuzz/corpus/every_key_of_mixed_two_ends.toml"),
                                          file_text("tests/fuzz/corpus/known_at_both_ends.toml")};
 

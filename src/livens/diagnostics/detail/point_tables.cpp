@@ -42,7 +42,8 @@ PointTables::PointTables(const ModelTables& of)
             const Vector3 f = F.column(c);
             if (f != Vector3{}) weights_.push_back({12 * b + 3 * c, {f[0], f[1], f[2]}, norm(f)});
             for (int q = 0; q < 4; ++q)
-                if (body.mass(q, c) != 0 && !body.holds_states()) mass_.push_back({12 * b + 3 * q, body.mass(q, c)});
+                if (body.mass(q, c) != 0 && !body.holds_states())
+                    mass_.push_back({12 * b + 3 * q, body.mass(q, c)});
             first_mass_.push_back(static_cast<int>(mass_.size()));
         }
         if (!body.is_point) rigid_.push_back(12 * b);

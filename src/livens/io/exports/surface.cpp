@@ -195,7 +195,8 @@ std::vector<std::vector<Drawn>> drawn_of(const Scenario& scenario)
             // A mesh of needles alone has nothing to show.
             if (Surface surface = surface_of(one); !surface.triangles.empty())
                 drawn.push_back({std::move(surface), one.place, one.axes, one.color, one.opacity});
-        if (b < bodies.size() && drawn.empty() && !bodies[b].holds_states()) drawn.push_back(shape_of(bodies[b], outline, size));
+        if (b < bodies.size() && drawn.empty() && !bodies[b].holds_states())
+            drawn.push_back(shape_of(bodies[b], outline, size));
     }
     return all;
 }

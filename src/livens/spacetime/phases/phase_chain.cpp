@@ -12,12 +12,12 @@
 #include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/diagnostics/largest.h"
-#include "livens/multibody/unwrapped_angles.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/phases/contacts.h"
 #include "livens/spacetime/phases/event_watch.h"
 #include "livens/spacetime/phases/events.h"
+#include "livens/spacetime/phases/samplings.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -43,7 +43,8 @@ Time part_of(const Time& time, double first, double last, double accuracy, doubl
         return some;
     };
     const auto* mesh = std::get_if<TimeMesh>(&time);
-    if (mesh == nullptr) return Span{first, last, accuracy, inside(std::get<Span>(time).output), first_length};
+    if (mesh == nullptr)
+        return Span{first, last, accuracy, inside(std::get<Span>(time).output), first_length};
     TimeMesh part{{first}, inside(mesh->required), inside(mesh->bends)};
     const std::vector<double> ends = inside(mesh->ends);
     const bool is_end = std::ranges::binary_search(mesh->ends, first);
@@ -81,7 +82,8 @@ public:
         Way at{problem_, options_, Decisions(given_, start_of(time_)), start_of(time_)};
         at.method = std::move(method);
         begin_at_stops(at, whole);
-        if (State& start = at.problem.conditions.start; !start.is_of_motion) ask_controllers(start);
+        if (State& start = at.problem.conditions.start; !start.is_of_motion)
+            ask_controllers(stated_, nearest(), start);
         while (at.first < known_.back()) {
             if (at.first > known_.front() &&
                 !is_met(decided(at), whole.motion, whole.motion.n_elements(), known_.back() - known_.front(),
@@ -105,6 +107,7 @@ private:
         double length = 0;    // of the longest element of the phase before
     };
 
+    double nearest() const { return nearest_ends * (known_.back() - known_.front()); }
     Model decided(const Way& at) const
     {
         return stated_.events().empty() ? stated_ : as_decided(stated_, at.decisions.times());
@@ -152,7 +155,7 @@ private:
         if (!whole.report.converged()) return false;
         at.first = end;
         const bool goes_on = act(at, fired, reached, whole);
-        if (goes_on && ask_controllers(reached)) {
+        if (goes_on && ask_controllers(stated_, nearest(), reached)) {
             at.jumps = true;
             if (at.first >= known_.back()) jump_at_end(whole.motion, stated_, reached.V);
         }
@@ -290,7 +293,7 @@ private:
             at.decisions.act(stated_, action, at.first);
             whole.events.push_back({e, at.first});
             if (action.does == EventAction::Does::set) {
-                change(stated_.events()[static_cast<std::size_t>(e)].change, reached);
+                change_states(stated_, stated_.events()[static_cast<std::size_t>(e)].change, reached);
                 at.jumps = at.first > known_.front();
             }
             goes_on = goes_on && action.does != EventAction::Does::end_motion;
@@ -299,36 +302,13 @@ private:
         return meet(at, met, reached, whole) && !is_storm(whole);
     }
 
-    /// Those that are asked at this instant, in their order. False: there are none.
-    bool ask_controllers(State& state) const
-    {
-        if (stated_.samplings().empty()) return false;
-        const double gap = nearest_ends * (known_.back() - known_.front());
-        bool is_any = false;
-        for (const Sampling& sampling : stated_.samplings()) {
-            const double k = std::round((state.t - sampling.first) / sampling.every),
-                         instant = sampling.first + k * sampling.every;
-            if (k < 0 || std::abs(instant - state.t) > gap || instant > sampling.last + gap) continue;
-            change(sampling.change, state);
-            is_any = true;
-        }
-        return is_any;
-    }
-
-    void change(const StateChange& change, State& state) const
-    {
-        const UnwrappedAngles turns(stated_);
-        change_states(stated_.loads()[static_cast<std::size_t>(change.load)], change,
-                      {state.t, Side::right}, state.X, turns.of(change.load, state.angles), state.V);
-    }
-
     /// Impacts of joints that these events begin, and of those that begin there as stated.
     bool meet(Way& at, const std::vector<int>& events, State& reached, Solution& whole) const
     {
         std::vector<int> begins;
         for (const int e : events)
             begins.push_back(stated_.events()[static_cast<std::size_t>(e)].action.joint);
-        const double gap = nearest_ends * (known_.back() - known_.front());
+        const double gap = nearest();
         for (int j = 0; j < static_cast<int>(stated_.joints().size()); ++j) {
             const Joint& joint = stated_.joints()[j];
             if (joint.impact && !joint.is_begun_by_event && std::abs(joint.from - at.first) <= gap)

@@ -66,22 +66,6 @@ std::string formula_of(const std::string& comparison, const std::string& text, c
     return "(" + left + ") - (" + right + ")";
 }
 
-/// Of "latch.force", "latch.torque_x"; none: it is something else.
-std::optional<ReactionInput> reaction_of(const Model& model, const std::string& name)
-{
-    const std::size_t point = name.rfind('.');
-    if (point == std::string::npos) return {};
-    const std::string what = name.substr(point + 1);
-    ReactionInput input{model.find_joint(name.substr(0, point)), what.starts_with("torque"), -1};
-    const std::string rest = what.substr(input.is_torque ? 6 : std::min<std::size_t>(5, what.size()));
-    const bool is_reaction = input.is_torque || what.starts_with("force");
-    if (input.joint < 0 || !is_reaction) return {};
-    for (int i = 0; i < 3; ++i)
-        if (rest == std::string("_") + "xyz"[i]) input.component = i;
-    if (!rest.empty() && input.component < 0) return {};
-    return input;
-}
-
 EventTerms terms_of(const Builder& builder, const Section& section, const std::string& text,
                     const std::string& path)
 {
@@ -150,8 +134,8 @@ std::string state_of(const Builder& builder, const std::string& name, const std:
             inputs.coordinates.push_back({state.coordinate, 0, false});
             return name;
         }
-    throw InputError({"controller-state", path, "there is no such state of a controller", "'" + name + "'", "",
-                      "", "as in { \"pid.i\" = \"0\" }"});
+    throw InputError({"controller-state", path, "there is no such state of a controller", "'" + name + "'",
+                      "", "", "as in { \"pid.i\" = \"0\" }"});
 }
 
 /// What an event sets. Throws InputError.
@@ -165,7 +149,8 @@ StateChange change_of(const Builder& builder, const std::string& event)
     for (const LoadReading& reading : load->readings)
         for (const ReadController& controller : builder.controllers())
             for (const ReadController::State& state : controller.states)
-                if (controller.name + "." + state.name == reading.name) change.states.push_back(state.coordinate);
+                if (controller.name + "." + state.name == reading.name)
+                    change.states.push_back(state.coordinate);
     return change;
 }
 

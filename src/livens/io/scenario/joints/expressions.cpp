@@ -83,9 +83,8 @@ Expression taken_in(const Expression& formula, const Inputs& of, const std::stri
         places.push_back(-1);
         if (!formula.depends_on(k)) continue;
         // No text can have a name like this.
-        const std::string name = of.symbols[k].find('(') == std::string::npos
-                                     ? owner + ".(" + of.symbols[k] + ")"
-                                     : of.symbols[k];
+        const std::string name =
+            of.symbols[k].find('(') == std::string::npos ? owner + ".(" + of.symbols[k] + ")" : of.symbols[k];
         const auto known = std::ranges::find(inputs.symbols, name);
         places.back() = static_cast<int>(known - inputs.symbols.begin());
         if (known != inputs.symbols.end()) continue;
@@ -123,9 +122,42 @@ void add_number(Inputs& inputs, const ReadController& controller, const std::str
 
 }   // namespace
 
+std::optional<ReactionInput> reaction_of(const Model& model, const std::string& name)
+{
+    const std::size_t point = name.rfind('.');
+    if (point == std::string::npos) return {};
+    const std::string what = name.substr(point + 1);
+    ReactionInput input{model.find_joint(name.substr(0, point)), what.starts_with("torque"), -1};
+    const std::string rest = what.substr(input.is_torque ? 6 : std::min<std::size_t>(5, what.size()));
+    const bool is_reaction = input.is_torque || what.starts_with("force");
+    if (input.joint < 0 || !is_reaction) return {};
+    for (int i = 0; i < 3; ++i)
+        if (rest == std::string("_") + "xyz"[i]) input.component = i;
+    if (!rest.empty() && input.component < 0) return {};
+    return input;
+}
+
+namespace {
+
+void add_reaction(Inputs& inputs, const ReactionInput& reaction, const std::string& symbol,
+                  const std::string& text, const std::string& path)
+{
+    if (!inputs.may_read_reactions)
+        refuse_input("input-algebraic", path, symbol, text,
+                     "reactions are read by loads along joints and on bodies, and by conditions",
+                     "let a load read it, or a condition");
+    inputs.symbols.push_back(symbol);
+    inputs.reads.push_back({0, false, static_cast<int>(inputs.reactions.size())});
+    inputs.reactions.push_back(reaction);
+}
+
+}   // namespace
+
 void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol, const std::string& text,
                const std::string& path)
 {
+    if (const std::optional<ReactionInput> reaction = reaction_of(builder.model(), text))
+        return add_reaction(inputs, *reaction, symbol, text, path);
     const Reference reference = split(text);
     for (const ReadController& controller : builder.controllers())
         if (controller.name == reference.name) return add_number(inputs, controller, symbol, text, path);
@@ -208,7 +240,8 @@ std::vector<Key> expression_keys(bool is_vector)
                 "s"}};
 }
 
-void read_named_inputs(const Builder& builder, const Section& section, Inputs& inputs, const std::string& path)
+void read_named_inputs(const Builder& builder, const Section& section, Inputs& inputs,
+                       const std::string& path)
 {
     const Value* given = section.find("inputs");
     if (given == nullptr) return;
@@ -220,6 +253,7 @@ void read_named_inputs(const Builder& builder, const Section& section, Inputs& i
 Inputs read_inputs(const Builder& builder, const Section& section, const std::string& path)
 {
     Inputs inputs;
+    inputs.may_read_reactions = true;
     read_named_inputs(builder, section, inputs, path);
     if (const Value* given = section.find("expression"))
         for (const std::string& text : texts_of(*given))
@@ -301,110 +335,6 @@ void add_breaks(const Builder& builder, const std::vector<Expression>& expressio
     std::ranges::sort(breaks);
     const auto repeated = std::unique(breaks.begin(), breaks.end());
     breaks.erase(repeated, breaks.end());
-}
-
-std::vector<double> numbers_of(const Inputs& inputs, const LawArguments& at)
-{
-    std::vector<double> numbers;
-    for (const Inputs::Read& read : inputs.reads)
-        numbers.push_back((read.is_rate ? at.rates : at.values)[read.coordinate]);
-    return numbers;
-}
-
-LoadParts parts_of(const std::vector<Expression>& expressions, const Inputs& inputs,
-                   const std::vector<double>& breaks, const TimeFunction& acts)
-{
-    LoadParts parts;
-    parts.coordinates = inputs.coordinates;
-    const LoadLaw law = law_of(expressions, inputs, breaks);
-    parts.law = [law, acts](const LawArguments& at, std::span<double> factors, std::span<double> slopes) {
-        law(at, factors, slopes);
-        // Outside of its interval the load is off, and its slopes have to vanish with it.
-        if (acts(at.at).value == 1) return;
-        std::ranges::fill(factors, 0.0);
-        std::ranges::fill(slopes, 0.0);
-    };
-    parts.recorded_law = recorded_law_of(expressions, inputs, breaks, acts);
-    for (const Inputs::Read& read : inputs.reads) parts.depends_on_rates |= read.is_rate;
-    parts.guards = guards_of(expressions, inputs);
-    parts.is_smooth = std::ranges::all_of(expressions, [](const Expression& e) { return e.is_affine(); });
-    parts.steepest = steepness_of(expressions, inputs);
-    parts.breaks = acts.breaks();
-    parts.breaks.insert(parts.breaks.end(), breaks.begin(), breaks.end());
-    parts.domain =
-        "its expression has no value there (0/0, as w/abs(w) at rest), or reads an angle more than 175 "
-        "degrees from its start";
-    return parts;
-}
-
-LoadLaw law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
-               const std::vector<double>& breaks)
-{
-    return [expressions, inputs, breaks](const LawArguments& at, std::span<double> factors,
-                                         std::span<double> slopes) {
-        const std::size_t m = inputs.coordinates.size(), n = inputs.reads.size();
-        const std::vector<double> numbers = numbers_of(inputs, at);
-        std::vector<double> by(slopes.empty() ? 0 : n);
-        std::ranges::fill(slopes, 0.0);
-        for (std::size_t i = 0; i < expressions.size(); ++i) {
-            factors[i] = expressions[i](beside_breaks(at.at, breaks), numbers, by);
-            for (std::size_t k = 0; k < by.size(); ++k)
-                // The row of one factor holds slopes by all values, then by all rates. Two symbols may read
-                // one coordinate, so that slopes add up.
-                slopes[2 * m * i + (inputs.reads[k].is_rate ? m : 0) + inputs.reads[k].coordinate] += by[k];
-        }
-    };
-}
-
-RecordedLaw recorded_law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
-                            const std::vector<double>& breaks, const TimeFunction& acts)
-{
-    std::vector<LawRead> reads;
-    for (const Inputs::Read& read : inputs.reads) reads.push_back({read.coordinate, read.is_rate});
-    return recorded_law(expressions, reads, breaks, acts);
-}
-
-LawSteepness steepness_of(const std::vector<Expression>& expressions, const Inputs& inputs)
-{
-    return [expressions, inputs](const EnclosedValue& t, std::span<const EnclosedValue> numbers,
-                                 std::span<double> bounds) {
-        std::vector<EnclosedValue> symbols;
-        for (const Inputs::Read& read : inputs.reads)
-            symbols.push_back(numbers[read.coordinate + (read.is_rate ? inputs.coordinates.size() : 0)]);
-        for (std::size_t k = 0; k < expressions.size(); ++k)
-            // Interval arithmetic encloses the slope over an element, for the looks at laws (theory.md, Looks
-            // at laws).
-            bounds[k] = expressions[k].over(t, symbols).slope.size();
-    };
-}
-
-void warn_of_kinks(Builder& builder, const Section& section, std::string_view key,
-                   const std::vector<Expression>& expressions)
-{
-    for (const Expression& one : expressions)
-        if (const std::string kink = one.kink_by_symbols(); !kink.empty())
-            builder.findings().warning(
-                section.place(key), "expression-kink",
-                section.label() + " may jump or bend where the motion decides: " + kink,
-                {"no element ends there but of lobatto and radau, forwards one after the other, so that the "
-                 "estimated error may miss it as well",
-                 "take the family lobatto, or a smooth law such as tanh"});
-}
-
-LawGuards guards_of(const std::vector<Expression>& expressions, const Inputs& inputs)
-{
-    std::vector<Guard> guards;
-    for (const Expression& one : expressions)
-        guards.insert(guards.end(), one.guards().begin(), one.guards().end());
-    if (guards.empty()) return {};
-    const auto values = [expressions, inputs](const LawArguments& at, std::span<double> found) {
-        const std::vector<double> numbers = numbers_of(inputs, at);
-        for (const Expression& one : expressions) {
-            one.guarded(at.at.t, numbers, found);
-            found = found.subspan(one.guards().size());
-        }
-    };
-    return {guards, values};
 }
 
 }   // namespace livens::inline io_internal

@@ -2,6 +2,7 @@
 // Formulas of loads and drives, and what they read of the motion.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,11 +15,14 @@ namespace livens::inline io_internal {
 
 /// `expression` for one number, or for three, and `inputs`.
 std::vector<Key> expression_keys(bool is_vector);
+/// Of "latch.force", "latch.torque_x"; none: it is something else.
+std::optional<ReactionInput> reaction_of(const Model& model, const std::string& name);
 /// What a name with a point stands for becomes a symbol. Throws InputError at path.expression, path.inputs.
 void add_input(const Builder& builder, Inputs& inputs, const std::string& symbol, const std::string& text,
                const std::string& path);
 /// What stands under `inputs`; throws likewise.
-void read_named_inputs(const Builder& builder, const Section& section, Inputs& inputs, const std::string& path);
+void read_named_inputs(const Builder& builder, const Section& section, Inputs& inputs,
+                       const std::string& path);
 /// Throw InputError at path.inputs, path.expression.
 Inputs read_inputs(const Builder& builder, const Section& section, const std::string& path);
 std::vector<Expression> read_expressions(const Section& section, const Inputs& inputs,

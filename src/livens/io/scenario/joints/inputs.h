@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "livens/multibody/events.h"
 #include "livens/multibody/loads/load_laws.h"
 #include "livens/time/expression.h"
 
@@ -16,10 +17,13 @@ struct Inputs {
     struct Read {
         std::size_t coordinate;
         bool is_rate;
+        int reaction = -1;   ///< instead of both, one of `reactions`
     };
     std::vector<std::string> symbols{};
     std::vector<LawCoordinate> coordinates{};
     std::vector<Read> reads{};
+    std::vector<ReactionInput> reactions{};
+    bool may_read_reactions = false;
     /// Names that stand for formulas, which are of these symbols.
     std::vector<std::pair<std::string, Expression>> formulas{};
 

@@ -78,7 +78,9 @@ void read_load(Builder& builder, const Section& load, const std::string& name, b
         return;
     if (!is_good || !over) return;
     builder.guard(path, [&] {
+        const std::size_t n_waiting = builder.reaction_laws().size();
         Load made = kind.make({load, name, first.index, second.index, builder, *over});
+        if (builder.reaction_laws().size() > n_waiting) return;
         made.is_begun_by_event = !condition_of(load, "from").empty();
         made.is_ended_by_event = !condition_of(load, "until").empty();
         if (made.is_decided_by_events()) {
@@ -149,6 +151,11 @@ void read_loads(Builder& builder)
         }
     for (std::size_t i = 0; i < sections.size(); ++i) read_load(builder, sections[i], names[i], is_good[i]);
     read_joint_loads(builder);
+    if (!builder.reaction_laws().empty() && builder.findings().n_errors() == 0)
+        builder.guard("load[" + builder.reaction_laws()[0].name + "]", [&] {
+            for (Load& load : loads_by_reactions(builder.model(), builder.reaction_laws()))
+                builder.model().add_load(std::move(load));
+        });
     check_start(builder);
 }
 

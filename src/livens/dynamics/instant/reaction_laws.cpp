@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Loads that read reactions, as all others are seen: docs/theory.md, "Laws of reactions".
+#include "livens/dynamics/instant/reaction_laws.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "livens/base/error.h"
+#include "livens/dynamics/instant/reaction_mechanism.h"
+#include "livens/multibody/loads/load_coordinate.h"
+
+namespace livens {
+
+namespace {
+
+using Values = std::vector<double>;
+
+/// One law as a load: what it looks at, in its own list of bodies.
+struct ByReactions {
+    std::shared_ptr<ReactionMechanism> mechanism;
+    std::size_t index = 0;
+    std::vector<int> bodies{};                                // of the load
+    std::vector<std::vector<LoadCoordinate>> coordinates{};   // of all laws
+
+    struct Seen {
+        Values factors;   // of this law
+        Values values, rates, reactions;
+    };
+
+    Seen look(const LoadArguments& at) const
+    {
+        State state{
+            at.at.t, std::vector<Matrix34>(static_cast<std::size_t>(mechanism->model().n_bodies())), {}};
+        state.V.resize(state.X.size());
+        for (std::size_t b = 0; b < bodies.size(); ++b)
+            if (bodies[b] != world) {
+                state.X[static_cast<std::size_t>(bodies[b])] = at.X[b];
+                state.V[static_cast<std::size_t>(bodies[b])] = at.V[b];
+            }
+        Values angles;
+        if (at.angles.size() >= mechanism->n_angles())
+            angles.assign(at.angles.begin(),
+                          at.angles.begin() + static_cast<std::ptrdiff_t>(mechanism->n_angles()));
+        std::vector<Values> values(coordinates.size()), rates(coordinates.size());
+        std::vector<LawArguments> arguments;
+        for (std::size_t i = 0; i < coordinates.size(); ++i) {
+            for (const LoadCoordinate& q : coordinates[i]) {
+                const CoordinateState one = q.look(at);
+                values[i].push_back(one.value);
+                rates[i].push_back(one.rate);
+            }
+            arguments.push_back({at.at, values[i], rates[i]});
+        }
+        Values factors;
+        Reactions reactions;
+        mechanism->solve(state, angles, at.at.side == Side::left ? Side::left : Side::right, arguments,
+                         factors, reactions);
+        std::size_t first = 0;
+        for (std::size_t i = 0; i < index; ++i) first += mechanism->laws()[i].units.size();
+        const ReactionLaw& law = mechanism->laws()[index];
+        return {Values(factors.begin() + static_cast<std::ptrdiff_t>(first),
+                       factors.begin() + static_cast<std::ptrdiff_t>(first + law.units.size())),
+                values[index], rates[index], mechanism->inputs(law, reactions)};
+    }
+
+    void forces(const LoadArguments& at, LoadForces& F) const
+    {
+        const Seen seen = look(at);
+        const ReactionLaw& law = mechanism->laws()[index];
+        for (std::size_t k = 0; k < seen.factors.size(); ++k) {
+            LoadForces unit{};
+            law.units[k].forces(at, unit);
+            for (std::size_t b = 0; b < 2; ++b) F[b] += seen.factors[k] * unit[b];
+        }
+    }
+
+    /// By differences: Newton's iteration asks for it, and what it leaves out costs a step.
+    void tangent(const LoadArguments& at, LoadTangent& out) const
+    {
+        LoadForces here{};
+        forces(at, here);
+        for (std::size_t c = 0; c < at.X.size(); ++c) {
+            if (bodies[c] == world) continue;
+            for (const bool is_rate : {false, true})
+                for (int j = 0; j < 12; ++j) {
+                    LoadArguments beside = at;
+                    double& number = is_rate ? beside.V[c].a[j] : beside.X[c].a[j];
+                    const double step = 1e-6 * std::max(1.0, std::abs(number));
+                    number += step;
+                    LoadForces there{};
+                    forces(beside, there);
+                    for (std::size_t b = 0; b < 2; ++b)
+                        for (int i = 0; i < 12; ++i)
+                            (is_rate ? out.V : out.X)[b][c](i, j) += (there[b].a[i] - here[b].a[i]) / step;
+                }
+        }
+    }
+};
+
+Load load_by(const std::shared_ptr<ReactionMechanism>& mechanism, std::size_t index)
+{
+    const ReactionLaw& law = mechanism->laws()[index];
+    const std::string path = "load[" + law.name + "]";
+    if (law.units.empty())
+        throw InputError({"load-empty", path, "a load needs units and a law", "", "", "", ""});
+    for (const Load& unit : law.units)
+        if (unit.bodies != law.units[0].bodies || unit.bodies.size() != 2)
+            throw InputError({"load-empty", path, "units of a load act on the same bodies", "", "", "", ""});
+    Load load;
+    load.name = law.name;
+    load.type = law.type;
+    load.bodies = law.units[0].bodies;
+    for (int b = 0; b < mechanism->model().n_bodies(); ++b)
+        if (std::ranges::find(load.bodies, b) == load.bodies.end()) load.bodies.push_back(b);
+    ByReactions made{mechanism, index, load.bodies, {}};
+    for (const Load& one : mechanism->model().loads())
+        load.angles.insert(load.angles.end(), one.angles.begin(), one.angles.end());
+    const State start = mechanism->model().start();
+    for (const ReactionLaw& each : mechanism->laws()) {
+        made.coordinates.emplace_back();
+        for (const LawCoordinate& q : each.coordinates) {
+            made.coordinates.back().emplace_back(q.coordinate, q.at_stated, Configurations(start.X));
+            made.coordinates.back().back().place(load, q.is_needed);
+        }
+    }
+    for (const Load& unit : law.units)
+        for (std::size_t b = 0; b < 2; ++b)
+            load.needs_directors[b] = load.needs_directors[b] || unit.needs_directors[b];
+    load.depends_on_X = load.depends_on_V = true;
+    load.breaks = law.breaks;
+    load.domain = "no force fits the reactions that it reads, or several do, or joints lose rank there";
+    load.guards = law.guards;
+    const auto all = std::make_shared<const ByReactions>(std::move(made));
+    load.forces = [all](const LoadArguments& at, LoadForces& F) { all->forces(at, F); };
+    load.tangent = [all](const LoadArguments& at, LoadTangent& out) { all->tangent(at, out); };
+    if (law.guarded)
+        load.guarded = [all, guarded = law.guarded](const LoadArguments& at, std::span<double> numbers) {
+            const ByReactions::Seen seen = all->look(at);
+            guarded({at.at, seen.values, seen.rates}, seen.reactions, numbers);
+        };
+    for (std::size_t k = 0; k < law.readings.size(); ++k)
+        load.readings.push_back({law.readings[k].name, law.readings[k].unit,
+                                 [all, k](const LoadArguments& at) { return all->look(at).factors[k]; }});
+    return load;
+}
+
+}   // namespace
+
+std::vector<Load> loads_by_reactions(const Model& model, const std::vector<ReactionLaw>& laws)
+{
+    const auto mechanism = std::make_shared<ReactionMechanism>(model, laws);
+    std::vector<Load> loads;
+    for (std::size_t i = 0; i < laws.size(); ++i) loads.push_back(load_by(mechanism, i));
+    return loads;
+}
+
+}   // namespace livens

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a controller's formulas become: forces on what holds its states, or what is asked at instants
+// (docs/theory.md, "States").
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "livens/base/text.h"
+#include "livens/io/scenario/controllers/controller_reader.h"
+#include "livens/io/scenario/joints/expressions.h"
+#include "livens/io/scenario/loads/load_makers.h"
+
+namespace livens::inline io_internal {
+
+namespace {
+
+/// At which its size is asked, beside the start.
+constexpr int instants_of_size = 64;
+
+}   // namespace
+
+void ControllerReader::measure(SizesOfStates& sizes) const
+{
+    const Section* time = only_section(builder_.run(), "time");
+    const double start = time == nullptr ? 0 : time->number("start");
+    const double duration = time == nullptr ? 1 : time->number("end") - start;
+    const State at = builder_.model().start();
+    std::vector<double> numbers, reach;   // at the start, and by how much they may change
+    for (const Inputs::Read& read : inputs_.reads) {
+        const LawCoordinate& q = inputs_.coordinates[read.coordinate];
+        numbers.push_back(read.is_rate ? coordinate_rate(q.coordinate, at.X, at.V) : q.at_stated);
+        reach.push_back(q.coordinate.is_angle() ? 0.1 : 0.1 * builder_.length());
+    }
+    for (std::size_t k = 0; k < states_.size(); ++k) {
+        double size = std::abs(states_[k].start), by_reach = 0;
+        for (int i = 0; i <= instants_of_size; ++i) {
+            std::vector<double> slopes(numbers.size());
+            const double value = formulas_[k](start + i * duration / instants_of_size, numbers, slopes);
+            const double decay = decay_of(k, slopes), change = is_sampled_            ? 1
+                                                               : decay * duration > 1 ? 1 / decay
+                                                                                      : duration;
+            if (std::isfinite(value)) size = std::max(size, change * std::abs(value));
+            for (std::size_t n = 0; n < numbers.size(); ++n)
+                if (std::isfinite(slopes[n]))
+                    by_reach = std::max(by_reach, change * std::abs(slopes[n]) * reach[n]);
+        }
+        if (size == 0) size = by_reach;
+        sizes[name_ + "." + states_[k].name] = std::isfinite(size) && size > 0 ? size : 1;
+    }
+}
+
+double ControllerReader::decay_of(std::size_t k, const std::vector<double>& slopes) const
+{
+    const auto own = std::ranges::find(inputs_.symbols, states_[k].name);
+    return own == inputs_.symbols.end()
+               ? 0
+               : std::abs(slopes[static_cast<std::size_t>(own - inputs_.symbols.begin())]);
+}
+
+std::vector<LawReading> ControllerReader::readings(const std::vector<Expression>& of_outputs)
+{
+    std::vector<LawReading> all;
+    for (const ReadController::State& state : own().states) {
+        std::size_t k = 0;   // its coordinate
+        while (k < inputs_.coordinates.size() &&
+               !is_same(inputs_.coordinates[k].coordinate, state.coordinate))
+            ++k;
+        if (k == inputs_.coordinates.size()) inputs_.coordinates.push_back({state.coordinate, 0, false});
+        all.push_back({state.name, "", [k](const LawArguments& at) { return at.rates[k]; }});
+    }
+    for (std::size_t k = 0; k < of_outputs.size(); ++k)
+        all.push_back(
+            {outputs_[k].name, "", [formula = of_outputs[k], inputs = inputs_](const LawArguments& at) {
+                 return formula(at.at.t, numbers_of(inputs, at));
+             }});
+    return all;
+}
+
+bool ControllerReader::is_same(const JointCoordinate& a, const JointCoordinate& b)
+{
+    return a.forms.size() == 1 && b.forms.size() == 1 && a.forms[0].body_j == b.forms[0].body_j &&
+           a.forms[0].body_i == b.forms[0].body_i && a.forms[0].b_j == b.forms[0].b_j;
+}
+
+void ControllerReader::add_observer(const std::string& name, const std::vector<LawReading>& told)
+{
+    builder_.model().add_load(observer(name, inputs_.coordinates, told, places(builder_)));
+}
+
+void ControllerReader::make_rates(const std::vector<Expression>& of_rates,
+                                  const std::vector<Expression>& of_outputs)
+{
+    for (const NamedText& one : outputs_)
+        own().outputs.push_back({one.name, *inputs_.formula(one.name), inputs_});
+    for (ReadController::Output& one : own().outputs) one.inputs.formulas.clear();
+    std::vector<double> breaks;
+    add_breaks(builder_, of_rates, breaks);
+    for (std::size_t first = 0; first < states_.size(); first += states_of_body) {
+        const std::size_t n = std::min(states_of_body, states_.size() - first);
+        const std::vector<Expression> some(of_rates.begin() + static_cast<std::ptrdiff_t>(first),
+                                           of_rates.begin() + static_cast<std::ptrdiff_t>(first + n));
+        LoadParts parts = parts_of(some, inputs_, breaks, 1.0);
+        const std::vector<Matrix34> X = places(builder_);
+        for (std::size_t k = 0; k < n; ++k)
+            parts.units.push_back(unit_of_state(states_[first + k].name, bodies_[first / states_of_body],
+                                                static_cast<int>(k), states_[first + k], scale_, X));
+        // It does no work on what has mass.
+        parts.power = [](const LawArguments&) { return 0.0; };
+        parts.domain = "the rates of its states have no value there (0/0, or a root of a negative number)";
+        if (!ends_at_bends(builder_)) warn_of_kinks(builder_, section_, "states", some);
+        builder_.model().add_load(
+            modulated(part_name("rates of ", first), std::string(controller_type), parts, X));
+    }
+    own().load = static_cast<int>(builder_.model().loads().size());
+    const std::vector<LawReading> told = readings(of_outputs);
+    add_observer("controller " + name_, told);
+}
+
+void ControllerReader::make_sampling()
+{
+    const Section* time = only_section(builder_.run(), "time");
+    const double first = section_.has("first") ? section_.number("first")
+                         : time == nullptr     ? 0
+                                               : time->number("start");
+    Sampling sampling{name_,
+                      {static_cast<int>(builder_.model().loads().size()), {}},
+                      section_.number("every"),
+                      first,
+                      time == nullptr ? first : time->number("end")};
+    if (!(sampling.every > 0))
+        refuse("controller-every", "every", "the period must be positive", to_text(sampling.every), "");
+    constexpr double most = 1e6;
+    if ((sampling.last - sampling.first) / sampling.every > most)
+        refuse("resource-limit", "every", "a controller is asked more than a million times", "",
+               "a longer period, or an earlier end of time");
+    std::vector<LawReading> next;
+    for (std::size_t k = 0; k < states_.size(); ++k) {
+        sampling.change.states.push_back(own().states[k].coordinate);
+        next.push_back(
+            {states_[k].name, "", [formula = formulas_[k], inputs = inputs_](const LawArguments& at) {
+                 return formula(at.at.t, numbers_of(inputs, at));
+             }});
+    }
+    std::vector<LawReading> told = readings({});
+    add_observer("next of " + name_, next);
+    own().load = static_cast<int>(builder_.model().loads().size());
+    add_observer("controller " + name_, told);
+    builder_.model().add_sampling(std::move(sampling));
+}
+
+}   // namespace livens::inline io_internal
