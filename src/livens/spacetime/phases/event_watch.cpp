@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
@@ -252,6 +253,38 @@ EventWatch::Border EventWatch::border_of(const Motion& motion, std::span<const i
         if (std::abs(change) > rounded) break;
     }
     return {here, change / way};
+}
+
+double EventWatch::rounding_at_end(const Motion& motion, int event) const
+{
+    // Elements are iterated, and their ends looked for, to so much of their motion.
+    constexpr double found_to = 1e-13;
+    constexpr double apart = 1e-9, digits = std::numeric_limits<double>::epsilon();
+    const double rate = border_of(motion, std::span(&event, 1)).rate, length = whole_.length();
+    const State end = motion.at_end(motion.n_elements());
+    const double here = margin(event, end);
+    double change = 0;
+    for (std::uint32_t pattern = 1; pattern <= 3; ++pattern) {   // each number up or down
+        State there = end;
+        std::uint32_t bits = 0x9e3779b9u * pattern;
+        const auto shifted = [&](double size) {
+            bits = bits * 1664525u + 1013904223u;
+            return (bits >> 31 != 0 ? apart : -apart) * size;
+        };
+        for (std::size_t b = 0; b < there.X.size(); ++b)
+            for (int i = 0; i < 3; ++i)
+                for (int k = 0; k < 4; ++k) {
+                    const double place = k == 0 ? std::max(length, norm(end.X[b].column(0))) : 1;
+                    there.X[b](i, k) += shifted(place);
+                    there.V[b](i, k) += shifted(norm(end.V[b].column(k)));
+                }
+        const double now = std::abs(margin(event, there) - here) / apart;
+        if (std::isfinite(now)) change = std::max(change, now);
+    }
+    const double of_state = rate > 0 ? digits * change / rate : 0;
+    const int n = motion.n_elements();
+    return std::sqrt(static_cast<double>(n)) * (digits * std::abs(end.t) + of_state) +
+           found_to * std::max(motion.mesh.length(n - 1), n > 1 ? motion.mesh.length(n - 2) : 0);
 }
 
 std::vector<int> EventWatch::holding(const Motion& motion, std::span<const int> events) const

@@ -36,6 +36,8 @@ public:
         double margin, rate;
     };
     Border border_of(const Motion& motion, std::span<const int> events) const;
+    /// What rounding of the state at the end of a motion makes of the instant of a condition, s.
+    double rounding_at_end(const Motion& motion, int event) const;
     /// Those of them that are true just behind the end; the nearest, if none is.
     std::vector<int> holding(const Motion& motion, std::span<const int> events) const;
     /// Whether the condition of an event holds in the state where the phase begins.

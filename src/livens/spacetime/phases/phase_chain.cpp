@@ -98,7 +98,8 @@ private:
         Decisions decisions;
         double first;   // where the phase begins
         Method method{};
-        bool jumps = false;   // behind an impact
+        bool jumps = false;               // behind an impact
+        std::vector<double> rounding{};   // of instants of events, where the phase has ended with them
     };
 
     Model decided(const Way& at) const
@@ -132,6 +133,9 @@ private:
         std::vector<int> fired = std::exchange(next.report.fired, {});
         at.method = next.method;   // what was open is chosen once
         if (watch != nullptr && !fired.empty() && !end_at_event(*watch, at, fired, next)) fired.clear();
+        at.rounding.assign(stated_.events().size(), 0.0);
+        for (const int e : fired)
+            at.rounding[static_cast<std::size_t>(e)] = watch->rounding_at_end(next.motion, e);
         const double end = next.motion.end();
         if (next.report.status == SolveStatus::inaccurate && (end == last || !fired.empty())) {
             next.report.status = SolveStatus::converged;   // the whole is judged, not a part of it
@@ -279,6 +283,7 @@ private:
             }
             at.decisions.act(stated_, action, at.first);
             whole.events.push_back({e, at.first});
+            whole.events.back().rounding = at.rounding[static_cast<std::size_t>(e)];
             goes_on = goes_on && action.does != EventAction::Does::end_motion;
         }
         if (!goes_on) return false;
@@ -290,7 +295,9 @@ private:
     {
         std::vector<int> begins;
         for (const int e : events)
-            begins.push_back(stated_.events()[static_cast<std::size_t>(e)].action.joint);
+            if (const int joint = stated_.events()[static_cast<std::size_t>(e)].action.joint;
+                std::ranges::find(begins, joint) == begins.end())   // by several conditions
+                begins.push_back(joint);
         const double gap = nearest_ends * (known_.back() - known_.front());
         for (int j = 0; j < static_cast<int>(stated_.joints().size()); ++j) {
             const Joint& joint = stated_.joints()[j];
@@ -325,6 +332,7 @@ private:
         if (of == outcome.begun.end() || (!of->is_hit && !of->closes)) return;   // it is only touched
         SolvedEvent one{event, at.first};
         one.impulse = of->impulse;
+        if (!at.rounding.empty()) one.rounding = at.rounding[static_cast<std::size_t>(event)];
         one.speed = of->approach;
         if (of->closes) {
             at.decisions.act(stated_, action, at.first);
@@ -341,7 +349,7 @@ private:
         for (const StopDepth& one : depths_of_stops(stated_, start))
             if (one.depth >= -touching_start) touched.push_back(one.event);
         if (touched.empty() || meet(at, touched, start, whole)) return;
-        throw InputError({"impact-simultaneous", "start", "stops that are hit where the motion begins", "",
+        throw InputError({"impact-simultaneous", "start", "stops are hit at once where the motion begins", "",
                           "", whole.report.message, "begin apart from them"});
     }
 
