@@ -206,11 +206,45 @@ bool EventWatch::is_open_stop(int event) const
            whole_.joints()[action.joint].impact && whole_.joints()[action.joint].impact->open_side != 0;
 }
 
+bool EventWatch::is_number_at(int event, const State& state) const
+{
+    return std::ranges::all_of(terms_at(event, state), [](double x) { return std::isfinite(x); });
+}
+
+std::string EventWatch::lost_in_words(const Motion& so_far) const
+{
+    const Event& event = whole_.events()[static_cast<std::size_t>(lost_)];
+    return "the condition of '" + event.name + "', " + event.text + ", is no number between " +
+           to_text(so_far.mesh.ends[so_far.n_elements() - 1], 6) + " s and " + to_text(so_far.end(), 6) +
+           " s; try: formulas that are finite wherever the motion comes";
+}
+
+/// Looks along the last element; of reactions at its end alone.
+bool EventWatch::is_number_along(const Motion& motion, int event) const
+{
+    const int n = motion.n_elements();
+    if (!is_number_at(event, motion.at_end(n))) return false;
+    if (!whole_.events()[static_cast<std::size_t>(event)].terms.reactions.empty()) return true;
+    const double start = motion.mesh.ends[n - 1], h = motion.mesh.length(n - 1);
+    constexpr int looks = 8;
+    for (int k = 1; k < looks; ++k) {
+        State state = motion.at(start + h * k / looks);
+        state.angles = motion.at_end(n - 1).angles;
+        if (!is_number_at(event, state)) return false;
+    }
+    return true;
+}
+
 std::vector<int> EventWatch::fired(const Motion& so_far)
 {
     const int n = so_far.n_elements(), n_events = static_cast<int>(armed_.size());
     std::vector<int> found;
     if (n == 0) return found;
+    for (int e = 0; e < n_events; ++e)
+        if (armed_[e] && !is_number_along(so_far, e)) {
+            lost_ = e;
+            return {e};
+        }
     if (held_.empty()) {
         const State start = beside(so_far, 0, behind, false);
         // What is open has not been met yet, though rounding may have it beyond the stop it has just left.

@@ -132,7 +132,9 @@ private:
         }
         std::vector<int> fired = std::exchange(next.report.fired, {});
         at.method = next.method;   // what was open is chosen once
-        if (watch != nullptr && !fired.empty() && !end_at_event(*watch, at, fired, next)) fired.clear();
+        const bool is_lost = watch != nullptr && watch->lost() >= 0;
+        if (watch != nullptr && !fired.empty() && (is_lost || !end_at_event(*watch, at, fired, next)))
+            fired.clear();
         at.rounding.assign(stated_.events().size(), 0.0);
         for (const int e : fired)
             at.rounding[static_cast<std::size_t>(e)] = watch->rounding_at_end(next.motion, e);
@@ -140,6 +142,11 @@ private:
         if (next.report.status == SolveStatus::inaccurate && (end == last || !fired.empty())) {
             next.report.status = SolveStatus::converged;   // the whole is judged, not a part of it
             next.report.message.clear();
+        }
+        if (is_lost) {
+            next.report.status = SolveStatus::not_converged;
+            next.report.failed_at = next.motion.mesh.ends[next.motion.n_elements() - 1];
+            next.report.message = watch->lost_in_words(next.motion);
         }
         State reached = next.motion.at_end(next.motion.n_elements());   // with angles that events count
         widen(next.motion, stated_, acting);
