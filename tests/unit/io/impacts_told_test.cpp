@@ -145,6 +145,16 @@ TEST(ToldErrorsOfImpacts, AreNotBelowTrueOnesAndCountRounding)
     EXPECT_LE(n_low, n_hits / 20) << n_hits;
 }
 
+/// A neighbour of this motion touches its wall again and again while the motion rests there: it is given up.
+TEST(ToldErrorsOfImpacts, NeighboursThatTouchWithoutEndAreGivenUp)
+{
+    const Oscillator one{20.94856992, 1.38388464,          16.8124, 1.2751, -0.0698,
+                         0.3182,      0.47875416416516076, 0.6626};
+    const SolvedScenario s = solved(test::replaced(one.text(1e-11), "end = 4", "end = 6"));
+    EXPECT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+    EXPECT_GT(hits_of(s).size(), 20u);
+}
+
 }   // namespace
 
 }   // namespace livens

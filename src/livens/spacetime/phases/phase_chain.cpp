@@ -22,7 +22,7 @@ namespace livens::inline spacetime_internal {
 namespace {
 
 /// More would be a storm: as many as that in a millionth of the time, or in all.
-constexpr int stormy = 200, most_events = 100'000;
+constexpr int stormy = 200, most_events = 100'000, most_beside = 500;   // of a neighbour in a window
 constexpr double no_time = 1e-6;
 /// Of an element: what is left of one behind an event is no element of its own.
 constexpr double least_rest = 1e-3;
@@ -99,6 +99,7 @@ private:
         double first;   // where the phase begins
         Method method{};
         bool jumps = false;               // behind an impact
+        std::vector<double> ends{};       // where events have ended phases
         std::vector<double> rounding{};   // of instants of events, where the phase has ended with them
     };
 
@@ -294,7 +295,7 @@ private:
             goes_on = goes_on && action.does != EventAction::Does::end_motion;
         }
         if (!goes_on) return false;
-        return meet(at, met, reached, whole) && !is_storm(whole);
+        return meet(at, met, reached, whole) && !is_storm(at, whole);
     }
 
     /// Impacts of joints that these events begin, and of those that begin there as stated.
@@ -360,19 +361,22 @@ private:
                           "", whole.report.message, "begin apart from them"});
     }
 
-    bool is_storm(Solution& whole) const
+    bool is_storm(Way& at, Solution& whole) const
     {
-        const std::size_t n = whole.events.size();
+        at.ends.push_back(at.first);   // stops that are but touched are no events
+        const std::size_t n = at.ends.size();
         if (n < stormy) return false;
-        const double since = whole.events[n - stormy].t, time = known_.back() - known_.front();
-        if (n < most_events && whole.events.back().t - since > no_time * time) return false;
+        const double since = at.ends[n - stormy], time = known_.back() - known_.front();
+        const std::size_t most = problem_.ends_by_events ? most_events : most_beside;
+        if (n < most && at.first - since > no_time * time) return false;
         SolveReport& report = whole.report;
         report.status = SolveStatus::not_converged;
-        report.failed_at = whole.events.back().t;
+        report.failed_at = at.first;
+        const std::string last =
+            whole.events.empty() ? ""
+                                 : stated_.events()[static_cast<std::size_t>(whole.events.back().event)].name;
         report.message = "events follow each other without an end: " + std::to_string(n) +
-                         " so far, the last of them '" +
-                         stated_.events()[static_cast<std::size_t>(whole.events.back().event)].name +
-                         "' at " + to_text(report.failed_at, 9) +
+                         " so far, the last of them '" + last + "' at " + to_text(report.failed_at, 9) +
                          " s; try: conditions that leave some way between what begins and what ends";
         return true;
     }
