@@ -38,7 +38,7 @@ class Tree(Adders):
     _home: str   # of an imported model: where paths of its meshes begin
     _imported: tuple[Diagnostic, ...]
     _text: str | None   # as it was read, as long as nothing was edited
-    _functions: dict[str, tuple[str, Callable[..., Any]]]
+    _functions: dict[str, tuple[str | None, Callable[..., Any]]]   # None: a guard of an event
     _built: dict[Any, tuple[Any, list[Diagnostic]]]
     _counted: dict[tuple[tuple[str, ...], float | None], Coordinates]
     _names: dict[str, list[tuple[str, Table]]] | None
@@ -68,7 +68,8 @@ class Tree(Adders):
             made = [diagnostic_of(d, root) for d in found]
         if scenario is not None:
             for name, (body, function) in self._functions.items():
-                scenario = scenario.with_load(name, body, adapted(function))
+                scenario = (scenario.with_guard(name, function) if body is None
+                            else scenario.with_load(name, body, adapted(function)))
         if len(self._built) >= 4:
             self._built.pop(next(iter(self._built), None), None)
         self._built[key] = (scenario, made)
@@ -97,7 +98,7 @@ class Tree(Adders):
     def _refuse_functions(self, what: str) -> None:
         if self._functions:
             names = ", ".join(f"'{name}'" for name in self._functions)
-            raise fault("python-function", f"the load {names} is a Python function, so the model cannot be {what}",
+            raise fault("python-function", f"{names} is a Python function, so the model cannot be {what}",
                         help="write it as an expression, or remove it: m.remove(name)")
 
     # Editing.

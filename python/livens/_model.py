@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -231,8 +231,9 @@ class Model(Tree):
             KeyError: no part has this name.
         """
         if isinstance(part, str) and part in self._functions:
-            del self._functions[part]
-            return self._forget()
+            body, _ = self._functions.pop(part)
+            if body is not None:
+                return self._forget()
         entry = self[part] if isinstance(part, str) else part
         entries = self._root.get(entry._key, [])
         left = [table for table in entries if table is not entry._table]
@@ -401,6 +402,45 @@ class Model(Tree):
                       "where a formula says the same, `expression` of add_force or add_torque is fast", SlowWarning,
                       stacklevel=stack_level())
         self._functions[name] = (wanted, function)
+        self._forget()
+
+    def add_guard(self, name: str, function: Callable[..., float], of: Sequence[str] = (), *,
+                  action: Literal["note", "stop"] = "note") -> None:
+        """Adds an event whose condition is a Python function, for experiments: formulas are found with more care.
+
+        The event is where the function becomes positive. It is known by looks alone: of a function that only touches
+        zero between two of them nothing is seen that its values do not show.
+
+        Args:
+            name: Name of the event.
+            function: ``function(t, *values)`` returns a finite number. It must not depend on earlier calls.
+            of: Names of what is passed, as conditions have them: ``"pin.angle"``, ``"tip.z"``, ``"latch.force"``.
+            action: ``"note"``: the event is reported; ``"stop"``: the motion ends there.
+
+        A model with functions cannot be pickled, written to a file or passed to :func:`livens.solve_many`. An
+        exception raised by the function ends the solution, a number that is not finite is an error.
+
+        Raises:
+            InputError: ``name-duplicate``; ``event-not-finite`` where the motion begins, from :func:`solve`.
+
+        Example:
+            >>> import livens as lv
+            >>> m = lv.Model("pendulum", gravity=(0, 0, -9.81))
+            >>> rod = m.add_body("rod", lv.box(1, 0.05, 0.05, mass=2), position=(0.5, 0, 0))
+            >>> pin = m.add_revolute("pin", "world", rod, at=(0, 0, 0), axis=(0, 1, 0))
+            >>> m.add_guard("half way", lambda t, angle: angle - 0.5, of=["pin.angle"], action="stop")
+            >>> sol = lv.solve(m, 5)
+            >>> sol.stopped_by, sol["pin"].angle[-1].round(9).item()
+            ('half way', 0.5)
+        """
+        if not callable(function):
+            raise TypeError(f"a function is wanted, not {type(function).__name__}")
+        if isinstance(of, str):
+            raise TypeError("of= is a list of names")
+        if name in self._functions:
+            raise fault("name-duplicate", f"an event called '{name}' exists already", f"event[{name}].name")
+        self.add_event(name, when=" and ".join(f"{one} > 0" for one in of) or "t > 0", action=action)
+        self._functions[name] = (None, function if of else lambda t, _: function(t))
         self._forget()
 
     # Checking and building.

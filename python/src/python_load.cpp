@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "python_load.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <stdexcept>
+#include <vector>
 
 #include "livens/base/error.h"
 
@@ -46,6 +49,22 @@ Wrench call(const nb::object& function, const LoadArguments& at)
         error.restore();
     }
     return {std::nan(""), 0, 0, 0, 0, 0};
+}
+
+/// nan where it raises.
+double ask(const nb::object& function, double t, std::span<const double> inputs)
+{
+    const nb::gil_scoped_acquire lock;
+    if (PyErr_Occurred() != nullptr) return std::nan("");
+    try {
+        nb::list given;
+        given.append(t);
+        for (const double x : inputs) given.append(x);
+        return nb::cast<double>(nb::float_(function(*given)));
+    } catch (nb::python_error& error) {
+        error.restore();
+    }
+    return std::nan("");
 }
 
 /// F of a force at the reference point and, but for point masses, a torque  (P21).
@@ -105,6 +124,35 @@ void add_python_load(Model& model, const std::string& name, const std::string& b
         tangent.V[0][0] = slopes(forces, at, at.V[0], step, n);
     };
     model.add_load(std::move(load));
+}
+
+void add_python_guard(Model& model, const std::string& event, nb::object function)
+{
+    const auto at = std::ranges::find(model.events(), event, &Event::name);
+    if (at == model.events().end())
+        throw InputError(
+            {"event-condition", "event[" + event + "]", "there is no event '" + event + "'", "", "", "", ""});
+    EventTerms terms = at->terms;
+    const auto kept = held(std::move(function));
+    terms.values = [kept, inputs = at->terms](const LawArguments& given, std::span<const double> reactions,
+                                              std::span<double> out) {
+        std::vector<double> values(static_cast<std::size_t>(inputs.n_terms));
+        inputs.values(given, reactions, values);
+        out[0] = ask(*kept, given.at.t, values);
+    };
+    terms.n_terms = 1;
+    terms.when = {{0}};
+    Model now(model.gravity());
+    for (const Body& body : model.bodies()) now.add_body(body);
+    for (const Joint& joint : model.joints()) now.add_joint(joint);
+    for (const Load& load : model.loads()) now.add_load(load);
+    for (const Sensor& sensor : model.sensors()) now.add_sensor(sensor);
+    for (const NamedPoint& point : model.points()) now.add_point(point);
+    for (Event one : model.events()) {
+        if (one.name == event) one.terms = terms;
+        now.add_event(std::move(one));
+    }
+    model = std::move(now);
 }
 
 }   // namespace livens::python

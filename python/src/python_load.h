@@ -16,4 +16,8 @@ namespace livens::python {
 void add_python_load(Model& model, const std::string& name, const std::string& body,
                      nanobind::object function);
 
+/// The condition of an event becomes `function(t, input, ..)`, true where that is positive; its terms are the
+/// inputs. What it raises is raised by solve(). Throws InputError for an unknown event.
+void add_python_guard(Model& model, const std::string& event, nanobind::object function);
+
 }   // namespace livens::python

@@ -195,7 +195,7 @@ Result solve_one(const Shared& scenario, nb::object progress, double most_bytes,
 {
     Watch watch(std::move(progress));
     std::optional<Result> result;
-    {
+    try {
         const nb::gil_scoped_release unlock;
         Unjudged motion = solved(
             scenario, [&](const Progress& p) { return watch.goes_on(p); }, most_bytes,
@@ -207,6 +207,8 @@ Result solve_one(const Shared& scenario, nb::object progress, double most_bytes,
             return is_wanted = PyErr_Occurred() == nullptr && PyErr_CheckSignals() == 0;
         };
         if (!watch.has_failed()) result = judged(std::move(motion), no_signal);
+    } catch (const InputError&) {
+        if (PyErr_Occurred() == nullptr) throw;   // else it follows from what a function has raised
     }
     if (!result || PyErr_Occurred() != nullptr) throw nb::python_error();
     return std::move(*result);
@@ -311,7 +313,15 @@ void add_solving(nb::module_& m)
                 add_python_load(copy->model, name, body, std::move(function));
                 return copy;
             },
-            nb::arg("name"), nb::arg("body"), nb::arg("function"));
+            nb::arg("name"), nb::arg("body"), nb::arg("function"))
+        .def(
+            "with_guard",
+            [](const Scenario& s, const std::string& event, nb::object function) {
+                auto copy = std::make_shared<Scenario>(s);
+                add_python_guard(copy->model, event, std::move(function));
+                return copy;
+            },
+            nb::arg("event"), nb::arg("function"));
     m.def("build_text", &build_text, nb::arg("text"), nb::arg("file"), nb::arg("folder"));
     m.def("build_tree", &build_tree, nb::arg("root"), nb::arg("text"), nb::arg("folder"),
           nb::arg("model_alone") = false);

@@ -67,6 +67,18 @@ export interface Channel {
   unit: string;
 }
 
+/** What the motion decided; numbers that are not known are null. */
+export interface MotionEvent {
+  name: string;
+  condition: string;
+  t: number;
+  error: number | null;
+  impulse: number; // of an impact, N s or N m s; else 0
+  speed: number; // with which bodies meet there, m/s or rad/s; else 0
+  behind: number | null; // with which they go apart
+  rests: number | null; // when a stop that closes is at rest
+  angle: boolean;
+}
 export interface Meta {
   name: string;
   title: string;
@@ -82,6 +94,7 @@ export interface Meta {
     figures: { figure: string; name: string; meaning: string }[]; // that it was judged by
   };
   notes: string[];
+  events?: MotionEvent[]; // pages of other versions have none
   method: string;
   version: string;
   constraints_hold_at: string;

@@ -62,7 +62,7 @@ class Report {
     this.picture = new Picture(run, this.time, signal, kept?.seen ?? null);
     this.list = new PlotList(run, this.time, kept?.choices ?? null);
     this.playback = new Playback(run, this.time);
-    this.scrub = new Scrub(this.time, motion.ends, () => this.playback.stop());
+    this.scrub = new Scrub(this.time, motion.ends, () => this.playback.stop(), run.meta.events);
     new Save(this.picture, this.time, this.playback, run.meta.name);
     const show = (second: Run | null) => this.picture.compare(second);
     this.compare = new Compare(by_id("compare"), run, this.time, show, signal);

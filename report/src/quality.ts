@@ -62,6 +62,53 @@ function table(run: Run): HTMLElement {
   );
 }
 
+/** What the motion decided, and its impacts; a click goes there. */
+function events(run: Run, time: Timeline): HTMLElement[] {
+  const all = run.meta.events ?? [],
+    most = 1000;
+  if (!all.length) return [];
+  const known = (x: number | null, unit: string, digits = 5) =>
+    x === null || !Number.isFinite(x) ? "" : `${number(x, digits)}\u00a0${unit}`;
+  const rows = all.slice(0, most).map((event) => {
+    const is_hit = event.speed > 0,
+      there = element("button", { type: "button" }, `${number(event.t, 10)}\u00a0s`);
+    there.addEventListener("click", () => time.set(event.t));
+    return element(
+      "tr",
+      {},
+      element("th", { scope: "row" }, event.name, element("small", {}, event.condition)),
+      element("td", { class: "n" }, there),
+      element("td", { class: "n" }, event.error === null ? "not known" : `${rough(event.error)}\u00a0s`),
+      element("td", { class: "n" }, is_hit ? known(event.speed, event.angle ? "rad/s" : "m/s") : ""),
+      element("td", { class: "n" }, is_hit ? known(event.behind, event.angle ? "rad/s" : "m/s") : ""),
+      element(
+        "td",
+        { class: "n" },
+        is_hit ? known(event.impulse, event.angle ? "N\u00a0m\u00a0s" : "N\u00a0s") : "",
+      ),
+      element("td", { class: "n" }, known(event.rests, "s", 8)),
+    );
+  });
+  const head = ["event", "time", "error", "speed before", "behind", "impulse", "at rest from"].map((h) =>
+    element("th", { scope: "col" }, h),
+  );
+  const more = all.length > most ? [element("p", {}, `and ${all.length - most} more`)] : [];
+  return [
+    element(
+      "div",
+      { class: "wide" },
+      element(
+        "table",
+        { class: "checks", id: "events" },
+        element("caption", {}, "What the motion decided"),
+        element("thead", {}, element("tr", {}, ...head)),
+        element("tbody", {}, ...rows),
+      ),
+    ),
+    ...more,
+  ];
+}
+
 function facts(run: Run): HTMLElement {
   const f = (name: string) => run.figure(name),
     list = element("dl", { class: "facts" });
@@ -130,6 +177,7 @@ export function build_quality(host: HTMLElement, run: Run, time: Timeline): Plot
     place,
     ...notes,
     table(run),
+    ...events(run, time),
     facts(run),
   );
   host.append(element("div", { class: "columns" }, judged, grid));

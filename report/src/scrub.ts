@@ -1,19 +1,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bar of time with the ends of elements below it, and the clock.
+// The bar of time with the ends of elements below it, marks of events with names, and the clock.
+import type { MotionEvent } from "./data";
 import { element_of } from "./motion";
-import { by_id, number, seconds } from "./text";
+import { by_id, element, number, seconds } from "./text";
 import { theme } from "./theme";
 import type { Timeline } from "./timeline";
 
 export class Scrub {
   private readonly bar = by_id<HTMLInputElement>("scrub");
   private readonly ruler = by_id<HTMLCanvasElement>("ruler");
+  private readonly marks: HTMLElement[] = [];
 
   constructor(
     private readonly time: Timeline,
     private readonly ends: Float64Array,
     moved_by_hand: () => void,
+    private readonly events: MotionEvent[] = [],
   ) {
+    const row = by_id("marks"),
+      most = 400; // more are a grey bar
+    row.hidden = events.length === 0 || !(time.span > 0);
+    for (const event of events.slice(0, most)) {
+      const mark = element(
+        "button",
+        {
+          type: "button",
+          title: `${event.name} at ${number(event.t, 9)}\u00a0s`,
+          "aria-label": `to ${event.name} at ${number(event.t, 6)} seconds`,
+        },
+        element("i", {}),
+        element("span", {}, event.name),
+      );
+      if (event.speed > 0) mark.classList.add("hit");
+      mark.addEventListener("click", () => {
+        moved_by_hand();
+        time.set(event.t);
+      });
+      this.marks.push(mark);
+    }
+    row.append(...this.marks);
     this.bar.min = String(time.start);
     this.bar.max = String(time.span > 0 ? time.end : time.start + 1);
     this.bar.disabled = !(time.span > 0);
@@ -39,7 +64,28 @@ export class Scrub {
     );
   }
 
+  /** Where they are, and names as far as there is room for them. */
+  private place_marks() {
+    const row = by_id("marks"),
+      { span, start } = this.time,
+      thumb = 8,
+      width = row.clientWidth - 2 * thumb;
+    let free = -Infinity;
+    this.marks.forEach((mark, k) => {
+      const x = thumb + ((this.events[k].t - start) / span) * width,
+        name = mark.lastElementChild as HTMLElement;
+      mark.style.left = `${x}px`;
+      name.hidden = false;
+      const wide = name.offsetWidth + 6,
+        is_left = x + wide > row.clientWidth;
+      mark.classList.toggle("left", is_left);
+      name.hidden = (is_left ? x - wide : x) < free;
+      if (!name.hidden) free = is_left ? x : x + wide;
+    });
+  }
+
   draw_ruler() {
+    if (this.marks.length && this.time.span > 0) this.place_marks();
     const { ruler, ends } = this,
       { span, start } = this.time,
       ratio = devicePixelRatio,

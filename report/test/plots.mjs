@@ -288,6 +288,51 @@ const tests = {
     assert.equal(await page.locator("#plot-list figure").filter({ hasText: "over" }).count(), 0);
     assert.deepEqual(page.problems, []);
   },
+  async "events stand on the bar of time and in a table"() {
+    // A ball that bounces from 1 m with a restitution of one half: impacts at t1, 2 t1, 2.5 t1, ..
+    const text =
+        'format = 1\ngravity = [0, 0, -9.81]\n[[body]]\nname = "ball"\nshape = { sphere = 0.1 }\nmass = 2\n' +
+        'position = [0, 0, 1]\n[[joint]]\nname = "guide"\ntype = "prismatic"\nbetween = ["world", "ball"]\n' +
+        "at = [0, 0, 0]\naxis = [0, 0, 1]\ncoordinate = 1\nlimits = [0, inf]\nlimit_restitution = 0.5\n" +
+        '[[event]]\nname = "half"\nwhen = "guide.displacement < 0.5"\n[time]\nend = 2\naccuracy = 1e-9\n',
+      first = Math.sqrt(2 / 9.81);
+    const page = await open(made("bounces", text).page);
+    const marks = page.locator("#marks button"),
+      n = await marks.count();
+    assert.ok(n > 10, `${n} marks`);
+    assert.equal(await marks.nth(0).locator("span").textContent(), "half");
+    assert.equal(await marks.nth(1).locator("span").textContent(), "guide.low");
+    const shown = await marks.locator("span:visible").count();
+    assert.ok(shown > 1 && shown < n, `${shown} of ${n} names: what has no room is left out`);
+    await marks.nth(1).click();
+    const now = await page.locator("#clock strong").textContent();
+    assert.ok(Math.abs(parseFloat(now) - first) < 1e-3, now);
+    await page.click("#tab-quality");
+    const rows = await page
+      .locator("#events tbody tr")
+      .evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+    assert.ok(rows.length >= n, `${rows.length} rows, ${n} marks`);
+    const speed = Math.sqrt(2 * 9.81),
+      [name, t, , before, behind, impulse] = rows[1].map((cell, i) => (i ? parseFloat(cell) : cell));
+    assert.ok(name.startsWith("guide.low"), name);
+    assert.ok(Math.abs(t - first) < 1e-8, `${t}`);
+    assert.match(rows[1][2], /e\u2212\d+\u00a0s$/);
+    assert.ok(Math.abs(before - speed) < 1e-3 && Math.abs(behind - speed / 2) < 1e-3, `${before} ${behind}`);
+    assert.ok(Math.abs(impulse - 3 * speed) < 1e-2, impulse);
+    assert.equal(rows[0][3], "", "what is no impact has no speed");
+    assert.ok(Math.abs(parseFloat(rows.at(-1)[6]) - 3 * first) < 1e-6, "when it is at rest");
+    assert.deepEqual(page.problems, []);
+    if (process.env.LIVENS_PICTURES) {
+      await page.screenshot({ path: `${process.env.LIVENS_PICTURES}/events_table.png` });
+      await page.click("#tab-motion");
+      await page.screenshot({ path: `${process.env.LIVENS_PICTURES}/events_bar.png` });
+    }
+    // The control: no events, no marks.
+    const quiet = await open(made("shaft and flap", shaft_and_flap()).page);
+    assert.ok(await quiet.locator("#marks").isHidden());
+    await quiet.click("#tab-quality");
+    assert.equal(await quiet.locator("#events").count(), 0);
+  },
 };
 
 await run(tests);

@@ -26,7 +26,7 @@ class WithRotors;
 struct SolvedEvent {
     int event = 0;   ///< of the model
     double t = 0;    ///< s
-    /// Estimated, of t (s): that of the second solution differs by so much. nan: not known.
+    /// Estimated, of t (s): by what that of the second solution differs, and rounding. nan: not known.
     double error = std::numeric_limits<double>::quiet_NaN();
     /// Of an impact: what the joint gave along its row, N s or N m s, and the speed with which its bodies
     /// met. 0: there was none.
@@ -34,6 +34,7 @@ struct SolvedEvent {
     /// Of a stop that begins to hold: when bounces too low to be followed would be over, s. nan: it does not,
     /// and bodies bounce.
     double rests_at = std::numeric_limits<double>::quiet_NaN();
+    double rounding = 0;   ///< what rounding of the state there makes of t, s
 };
 
 /// What the motion decided, and what that makes of the model.

@@ -496,8 +496,8 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
     others.insert({"conditions-value", "periodic-free", "periodic-turn", "roots-unused", "guess-bodies",
                    "guess-time", "guess-unused", "unknown-bounds", "unknown-guess", "unknown-march",
                    "unknown-order", "unknown-place", "unknown-unseen"});   // their own tests
-    others.insert({"event-action", "event-condition", "event-method", "event-reaction", "impact-simultaneous",
-                   "stop-limits", "stop-of", "stop-restitution", "stop-self",
+    others.insert({"event-action", "event-condition", "event-method", "event-not-finite", "event-reaction",
+                   "impact-simultaneous", "stop-limits", "stop-of", "stop-restitution", "stop-self",
                    "stop-violated"});   // decided_events_test.cpp, stops_test.cpp
     others.insert({"controller-every", "controller-name", "controller-sampled", "controller-size",
                    "controller-state", "controller-states"});   // controllers_test.cpp

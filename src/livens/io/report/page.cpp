@@ -169,6 +169,7 @@ ReportedRun reported(const ReportInput& input, const ReportOptions& options)
     write_poses(data, input.run, options.most_bytes);
     write_scene(data, input.scenario, input.run);
     write_curves(data, input.scenario, input.run, options.most_bytes);
+    write_events(data, input.scenario, input.run);
     write_quality(data, input.scenario, input.run);
     json.key("arrays");
     payload.write_table(json);

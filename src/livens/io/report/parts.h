@@ -22,6 +22,9 @@ void write_scene(ReportData& data, const Scenario& scenario, const Run& run);
 /// "curves", "channels": what is plotted over time beside the bodies.
 void write_curves(ReportData& data, const Scenario& scenario, const Run& run, double most_bytes);
 
+/// "events": what the motion decided, in its order.
+void write_events(ReportData& data, const Scenario& scenario, const Run& run);
+
 /// "quality": series that tell how right the run is, and the bounds of its acceptance.
 void write_quality(ReportData& data, const Scenario& scenario, const Run& run);
 

@@ -12,6 +12,9 @@ namespace livens {
 
 namespace {
 
+/// Of the error of an instant that of the next one has at least: both solutions may agree by chance.
+constexpr double kept_error = 0.5;
+
 /// Whether an element end that is neither the first nor the last is where a law bends.
 bool has_bend(const Motion& motion, const TimeMesh& mesh, double end)
 {
@@ -65,7 +68,8 @@ void ReferenceSolution::compare_events(Solution& second, double start, double en
     if (!std::isnan(differs_from_)) return;
     for (std::size_t k = 0; k < std::min(own.size(), of_first.size()); ++k) {
         const double there = of_first[k]->t, later = there - own[k].t;
-        of_first[k]->error = std::abs(later);
+        const double before = k > 0 ? of_first[k - 1]->error : 0;
+        of_first[k]->error = std::max(std::abs(later) + of_first[k]->rounding, kept_error * before);
         const int i = element_end_at(motion.mesh, own[k].t), n = motion.n_elements();
         const bool fits =
             i > 0 && there > motion.mesh.ends[i - 1] && (i == n || there < motion.mesh.ends[i + 1]);

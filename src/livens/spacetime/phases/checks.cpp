@@ -75,12 +75,16 @@ void check_decided(const Model& model, const Problem& problem, const Method& met
     refuse(!options.end_at_bends, "breaks ignored", "elements have to end where events are",
            "leave 'breaks' out");
     if (!std::isinf(options.meeting)) check_stops(model, given.start);
-    // Reactions that are not unique are refused before anything is solved.
-    if (model.events().end() != std::ranges::find_if(model.events(), [](const Event& event) {
-            return !event.terms.reactions.empty();
-        })) {
-        std::vector<bool> none(model.events().size(), false);
-        const EventWatch watch(model, acting_at(model, given.start.t), std::move(none), given.start);
+    // Reactions that are not unique are refused before anything is solved, and what is no number.
+    std::vector<bool> none(model.events().size(), false);
+    const EventWatch watch(model, acting_at(model, given.start.t), std::move(none), given.start);
+    for (int e = 0; e < static_cast<int>(model.events().size()); ++e) {
+        const Event& event = model.events()[static_cast<std::size_t>(e)];
+        if (!event.terms.reactions.empty() || watch.is_number_at(e, watch.start())) continue;
+        throw InputError({"event-not-finite", "event[" + event.name + "]",
+                          "the condition of '" + event.name + "' is no number where the motion begins",
+                          event.text, "", "a pole, or a function outside of its range",
+                          "take formulas that are finite wherever the motion comes"});
     }
     refuse(options.estimate == SolveOptions::Estimate::local, "a local estimate",
            "a second solution with events of its own tells their errors", "use \"second\" or \"none\"");

@@ -53,7 +53,12 @@ private:
 std::string names_of(const Model& model, const std::vector<int>& joints)
 {
     std::string names;
-    for (const int j : joints) names += (names.empty() ? "'" : ", '") + model.joints()[j].name + "'";
+    std::vector<int> told;
+    for (const int j : joints) {
+        if (std::ranges::find(told, j) != told.end()) continue;
+        told.push_back(j);
+        names += (names.empty() ? "'" : ", '") + model.joints()[j].name + "'";
+    }
     return names;
 }
 
@@ -97,7 +102,7 @@ private:
     bool is_hit(int joint) const { return std::ranges::find(hit_, joint) != hit_.end(); }
     bool refuse(const std::string& why)
     {
-        outcome_.refused = names_of(model_, begins_) + " at " + to_text(before_.t, 6) + " s: " + why;
+        outcome_.refused = why;
         return false;
     }
 
@@ -105,20 +110,23 @@ private:
     bool strike()
     {
         if (stops_.size() > most_stops_at_once)
-            return refuse("more than " + std::to_string(most_stops_at_once) + " stops touch at once");
+            return refuse("more than " + std::to_string(most_stops_at_once) + " stops touch at once at " +
+                          to_text(before_.t, 6) + " s");
         ImpactOutcome found;
         if (!hit_.empty() || !both_ways_.empty()) {
             std::vector<Joint> all;
             for (const int j : stops_) all.push_back(model_.joints()[j]);
             found = impact(held_.with(both_ways_, {}), before_, all);
             if (!found.is_found)
-                return refuse("no velocities behind the impact fulfil the joints, which lose rank there");
+                return refuse("no velocities behind the impact of " + names_of(model_, begins_) + " at " +
+                              to_text(before_.t, 6) + " s fulfil the joints, which lose rank there");
             const bool is_named =
                 std::ranges::all_of(hit_, [&](int j) { return model_.joints()[j].impact->goes_together; });
             if (hit_.size() > 1 && !found.are_apart && !is_named)
-                return refuse(
-                    "they are hit at the same instant, where what happens is a law of its own; state "
-                    "that they go together, by Moreau's law");
+                return refuse(names_of(model_, hit_) + " are hit at the same instant, " +
+                              to_text(before_.t, 6) +
+                              " s, and feel each other: what happens is a law of its own, which they have to "
+                              "name (all at once, by Moreau's law)");
             outcome_.V = found.V;
             outcome_.jumps = true;
         } else {

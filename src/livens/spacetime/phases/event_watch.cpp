@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
@@ -205,11 +206,45 @@ bool EventWatch::is_open_stop(int event) const
            whole_.joints()[action.joint].impact && whole_.joints()[action.joint].impact->open_side != 0;
 }
 
+bool EventWatch::is_number_at(int event, const State& state) const
+{
+    return std::ranges::all_of(terms_at(event, state), [](double x) { return std::isfinite(x); });
+}
+
+std::string EventWatch::lost_in_words(const Motion& so_far) const
+{
+    const Event& event = whole_.events()[static_cast<std::size_t>(lost_)];
+    return "the condition of '" + event.name + "', " + event.text + ", is no number between " +
+           to_text(so_far.mesh.ends[so_far.n_elements() - 1], 6) + " s and " + to_text(so_far.end(), 6) +
+           " s; try: formulas that are finite wherever the motion comes";
+}
+
+/// Looks along the last element; of reactions at its end alone.
+bool EventWatch::is_number_along(const Motion& motion, int event) const
+{
+    const int n = motion.n_elements();
+    if (!is_number_at(event, motion.at_end(n))) return false;
+    if (!whole_.events()[static_cast<std::size_t>(event)].terms.reactions.empty()) return true;
+    const double start = motion.mesh.ends[n - 1], h = motion.mesh.length(n - 1);
+    constexpr int looks = 8;
+    for (int k = 1; k < looks; ++k) {
+        State state = motion.at(start + h * k / looks);
+        state.angles = motion.at_end(n - 1).angles;
+        if (!is_number_at(event, state)) return false;
+    }
+    return true;
+}
+
 std::vector<int> EventWatch::fired(const Motion& so_far)
 {
     const int n = so_far.n_elements(), n_events = static_cast<int>(armed_.size());
     std::vector<int> found;
     if (n == 0) return found;
+    for (int e = 0; e < n_events; ++e)
+        if (armed_[e] && !is_number_along(so_far, e)) {
+            lost_ = e;
+            return {e};
+        }
     if (held_.empty()) {
         const State start = beside(so_far, 0, behind, false);
         // What is open has not been met yet, though rounding may have it beyond the stop it has just left.
@@ -252,6 +287,38 @@ EventWatch::Border EventWatch::border_of(const Motion& motion, std::span<const i
         if (std::abs(change) > rounded) break;
     }
     return {here, change / way};
+}
+
+double EventWatch::rounding_at_end(const Motion& motion, int event) const
+{
+    // Elements are iterated, and their ends looked for, to so much of their motion.
+    constexpr double found_to = 1e-13;
+    constexpr double apart = 1e-9, digits = std::numeric_limits<double>::epsilon();
+    const double rate = border_of(motion, std::span(&event, 1)).rate, length = whole_.length();
+    const State end = motion.at_end(motion.n_elements());
+    const double here = margin(event, end);
+    double change = 0;
+    for (std::uint32_t pattern = 1; pattern <= 3; ++pattern) {   // each number up or down
+        State there = end;
+        std::uint32_t bits = 0x9e3779b9u * pattern;
+        const auto shifted = [&](double size) {
+            bits = bits * 1664525u + 1013904223u;
+            return (bits >> 31 != 0 ? apart : -apart) * size;
+        };
+        for (std::size_t b = 0; b < there.X.size(); ++b)
+            for (int i = 0; i < 3; ++i)
+                for (int k = 0; k < 4; ++k) {
+                    const double place = k == 0 ? std::max(length, norm(end.X[b].column(0))) : 1;
+                    there.X[b](i, k) += shifted(place);
+                    there.V[b](i, k) += shifted(norm(end.V[b].column(k)));
+                }
+        const double now = std::abs(margin(event, there) - here) / apart;
+        if (std::isfinite(now)) change = std::max(change, now);
+    }
+    const double of_state = rate > 0 ? digits * change / rate : 0;
+    const int n = motion.n_elements();
+    return std::sqrt(static_cast<double>(n)) * (digits * std::abs(end.t) + of_state) +
+           found_to * std::max(motion.mesh.length(n - 1), n > 1 ? motion.mesh.length(n - 2) : 0);
 }
 
 std::vector<int> EventWatch::holding(const Motion& motion, std::span<const int> events) const

@@ -30,12 +30,19 @@ public:
 
     /// Armed events that came true with the last element of a motion that grows by one at a time.
     std::vector<int> fired(const Motion& so_far);
+    /// Of fired(): an event whose formulas are no numbers somewhere in the last element; -1: none.
+    int lost() const { return lost_; }
+    std::string lost_in_words(const Motion& so_far) const;
+    /// Whether all formulas of a condition are numbers in a state.
+    bool is_number_at(int event, const State& state) const;
     /// How far the first of some conditions is from becoming true at the end of a motion, as states at
     /// element ends have it, and how that goes on behind it (per s).
     struct Border {
         double margin, rate;
     };
     Border border_of(const Motion& motion, std::span<const int> events) const;
+    /// What rounding of the state at the end of a motion makes of the instant of a condition, s.
+    double rounding_at_end(const Motion& motion, int event) const;
     /// Those of them that are true just behind the end; the nearest, if none is.
     std::vector<int> holding(const Motion& motion, std::span<const int> events) const;
     /// Whether the condition of an event holds in the state where the phase begins.
@@ -48,6 +55,7 @@ public:
 private:
     std::function<void(const LoadArguments&, std::span<double>)> reactions_of(const Event& event);
     bool is_open_stop(int event) const;
+    bool is_number_along(const Motion& motion, int event) const;
     State beside(const Motion& motion, int end, double share, bool by_slope) const;
     bool comes_at_once(const Motion& motion, int event) const;
     std::vector<double> terms_at(int event, const State& state) const;
@@ -62,7 +70,8 @@ private:
     std::shared_ptr<SettledInstant> mechanism_;   // null: nothing asks for reactions
     std::unique_ptr<LoadTables> loads_;
     std::vector<double> slack_;   // of each event: it is looked for so far behind its border, see fired()
-    std::vector<bool> held_;      // of each event, at the last end
+    int lost_ = -1;
+    std::vector<bool> held_;   // of each event, at the last end
 };
 
 }   // namespace livens::inline spacetime_internal

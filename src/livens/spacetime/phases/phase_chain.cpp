@@ -24,7 +24,7 @@ namespace livens::inline spacetime_internal {
 namespace {
 
 /// More would be a storm: as many as that in a millionth of the time, or in all.
-constexpr int stormy = 200, most_events = 100'000;
+constexpr int stormy = 200, most_events = 100'000, most_beside = 500;   // of a neighbour in a window
 constexpr double no_time = 1e-6;
 /// Of an element: what is left of one behind an event is no element of its own.
 constexpr double least_rest = 1e-3;
@@ -103,8 +103,10 @@ private:
         Decisions decisions;
         double first;   // where the phase begins
         Method method{};
-        bool jumps = false;   // behind an impact
-        double length = 0;    // of the longest element of the phase before
+        bool jumps = false;               // behind an impact
+        double length = 0;                // of the longest element of the phase before
+        std::vector<double> ends{};       // where events have ended phases
+        std::vector<double> rounding{};   // of instants of events, where the phase has ended with them
     };
 
     double nearest() const { return nearest_ends * (known_.back() - known_.front()); }
@@ -138,7 +140,12 @@ private:
         }
         std::vector<int> fired = std::exchange(next.report.fired, {});
         at.method = next.method;   // what was open is chosen once
-        if (watch != nullptr && !fired.empty() && !end_at_event(*watch, at, fired, next)) fired.clear();
+        const bool is_lost = watch != nullptr && watch->lost() >= 0;
+        if (watch != nullptr && !fired.empty() && (is_lost || !end_at_event(*watch, at, fired, next)))
+            fired.clear();
+        at.rounding.assign(stated_.events().size(), 0.0);
+        for (const int e : fired)
+            at.rounding[static_cast<std::size_t>(e)] = watch->rounding_at_end(next.motion, e);
         const double end = next.motion.end();
         if (next.report.status == SolveStatus::inaccurate && (end == last || !fired.empty())) {
             next.report.status = SolveStatus::converged;   // the whole is judged, not a part of it
@@ -146,6 +153,11 @@ private:
         }
         at.length = 0;
         for (int e = 0; e < next.motion.n_elements(); ++e) raise_to(at.length, next.motion.mesh.length(e));
+        if (is_lost) {
+            next.report.status = SolveStatus::not_converged;
+            next.report.failed_at = next.motion.mesh.ends[next.motion.n_elements() - 1];
+            next.report.message = watch->lost_in_words(next.motion);
+        }
         State reached = next.motion.at_end(next.motion.n_elements());   // with angles that events count
         widen(next.motion, stated_, acting);
         whole.method = next.method;
@@ -292,6 +304,7 @@ private:
             }
             at.decisions.act(stated_, action, at.first);
             whole.events.push_back({e, at.first});
+            whole.events.back().rounding = at.rounding[static_cast<std::size_t>(e)];
             if (action.does == EventAction::Does::set) {
                 change_states(stated_, stated_.events()[static_cast<std::size_t>(e)].change, reached);
                 at.jumps = at.first > known_.front();
@@ -299,7 +312,7 @@ private:
             goes_on = goes_on && action.does != EventAction::Does::end_motion;
         }
         if (!goes_on) return false;
-        return meet(at, met, reached, whole) && !is_storm(whole);
+        return meet(at, met, reached, whole) && !is_storm(at, whole);
     }
 
     /// Impacts of joints that these events begin, and of those that begin there as stated.
@@ -307,7 +320,9 @@ private:
     {
         std::vector<int> begins;
         for (const int e : events)
-            begins.push_back(stated_.events()[static_cast<std::size_t>(e)].action.joint);
+            if (const int joint = stated_.events()[static_cast<std::size_t>(e)].action.joint;
+                std::ranges::find(begins, joint) == begins.end())   // by several conditions
+                begins.push_back(joint);
         const double gap = nearest();
         for (int j = 0; j < static_cast<int>(stated_.joints().size()); ++j) {
             const Joint& joint = stated_.joints()[j];
@@ -342,6 +357,7 @@ private:
         if (of == outcome.begun.end() || (!of->is_hit && !of->closes)) return;   // it is only touched
         SolvedEvent one{event, at.first};
         one.impulse = of->impulse;
+        if (!at.rounding.empty()) one.rounding = at.rounding[static_cast<std::size_t>(event)];
         one.speed = of->approach;
         if (of->closes) {
             at.decisions.act(stated_, action, at.first);
@@ -358,23 +374,26 @@ private:
         for (const StopDepth& one : depths_of_stops(stated_, start))
             if (one.depth >= -touching_start) touched.push_back(one.event);
         if (touched.empty() || meet(at, touched, start, whole)) return;
-        throw InputError({"impact-simultaneous", "start", "stops that are hit where the motion begins", "",
+        throw InputError({"impact-simultaneous", "start", "stops are hit at once where the motion begins", "",
                           "", whole.report.message, "begin apart from them"});
     }
 
-    bool is_storm(Solution& whole) const
+    bool is_storm(Way& at, Solution& whole) const
     {
-        const std::size_t n = whole.events.size();
+        at.ends.push_back(at.first);   // stops that are but touched are no events
+        const std::size_t n = at.ends.size();
         if (n < stormy) return false;
-        const double since = whole.events[n - stormy].t, time = known_.back() - known_.front();
-        if (n < most_events && whole.events.back().t - since > no_time * time) return false;
+        const double since = at.ends[n - stormy], time = known_.back() - known_.front();
+        const std::size_t most = problem_.ends_by_events ? most_events : most_beside;
+        if (n < most && at.first - since > no_time * time) return false;
         SolveReport& report = whole.report;
         report.status = SolveStatus::not_converged;
-        report.failed_at = whole.events.back().t;
+        report.failed_at = at.first;
+        const std::string last =
+            whole.events.empty() ? ""
+                                 : stated_.events()[static_cast<std::size_t>(whole.events.back().event)].name;
         report.message = "events follow each other without an end: " + std::to_string(n) +
-                         " so far, the last of them '" +
-                         stated_.events()[static_cast<std::size_t>(whole.events.back().event)].name +
-                         "' at " + to_text(report.failed_at, 9) +
+                         " so far, the last of them '" + last + "' at " + to_text(report.failed_at, 9) +
                          " s; try: conditions that leave some way between what begins and what ends";
         return true;
     }
