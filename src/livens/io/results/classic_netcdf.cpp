@@ -199,8 +199,8 @@ void ClassicWriter::divide()
     for (std::size_t i = 0; i < variables_.size(); ++i) {
         ClassicVariable& variable = variables_[i];
         Progress& progress = progress_[i];
-        const auto front = static_cast<std::size_t>(named(dimensions_, variable.dimensions.front()) -
-                                                    dimensions_.data());
+        const auto front =
+            static_cast<std::size_t>(named(dimensions_, variable.dimensions.front()) - dimensions_.data());
         progress.expected = shared_->is_first() ? variable.n_bytes : 0;
         if (!slabs[front]) continue;
         assert(variable.type == NumberType::real);

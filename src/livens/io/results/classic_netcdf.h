@@ -66,8 +66,9 @@ struct Slab {
     std::uint64_t before = 0, total = 0, skipped = 0;
 };
 
-/// What writers of one file know of each other. Each has declared the same, appends its own values of variables
-/// whose first dimension is divided, real ones, and puts them where they belong; the first writes all others.
+/// What writers of one file know of each other. Each has declared the same, appends its own values of
+/// variables whose first dimension is divided, real ones, and puts them where they belong; the first writes
+/// all others.
 class SharedFile {
 public:
     virtual ~SharedFile() = default;
@@ -110,7 +111,8 @@ private:
         std::uint64_t done = 0;   ///< bytes
         Checksum checksum{};
         std::size_t checksum_place = 0;   ///< in the header
-        // Of what is shared: bytes that this part has, how many the parts before have, numbers to be left out.
+        // Of what is shared: bytes that this part has, how many the parts before have, numbers to be left
+        // out.
         std::uint64_t expected = 0, offset = 0;
         std::size_t left_out = 0;
         bool is_divided = false, is_passed_on = false;
