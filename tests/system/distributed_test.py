@@ -36,15 +36,14 @@ type = "revolute"
 between = ["world", "upper"]
 at = [0, 0, 0]
 axis = [0, 1, 0]
-coordinate = "60 deg"
-rate = 0.5
+rate = 4
 [[joint]]
 name = "elbow"
 type = "revolute"
 between = ["upper", "lower"]
 at = [0, 0, -1]
 axis = [0, 1, 0]
-coordinate = "20 deg"
+rate = -3
 [time]
 end = {end}
 elements = {elements}
