@@ -2,11 +2,10 @@
 """examples/python/many_runs.py by local processes: 10,000 runs, of which one fails, while a worker is killed."""
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import os
 import pathlib
 import signal
-import sys
 from types import ModuleType
 from typing import Any
 
@@ -20,12 +19,8 @@ pytestmark = pytest.mark.filterwarnings("default")   # what others warn of is no
 @pytest.fixture
 def script(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     pytest.importorskip("distributed")
-    spec = importlib.util.spec_from_file_location("many_runs", SCRIPT)
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    monkeypatch.setitem(sys.modules, "many_runs", module)
-    monkeypatch.setenv("PYTHONPATH", str(SCRIPT.parent))   # of workers, who import it
-    spec.loader.exec_module(module)
+    monkeypatch.syspath_prepend(str(SCRIPT.parent))   # workers are given this path, too
+    module = importlib.import_module("many_runs")
     return module
 
 

@@ -31,7 +31,7 @@ type = "revolute"
 between = ["world", "rod"]
 at = [0, 0, 0]
 axis = [0, 1, 0]
-coordinate = "60 deg"
+rate = 3
 [time]
 end = 1
 elements = 40
