@@ -166,7 +166,7 @@ class ByMpirun(Distributed):
         for code, text in cases.items():
             done = self.ranks(4, self.write(text), "-o", "none.nc", check=False)
             self.assertEqual(done.returncode, 3, done.stderr)
-            self.assertEqual(done.stderr.count(code), 1, done.stderr)
+            self.assertEqual(done.stderr.count(f"error[{code}]"), 1, done.stderr)
             self.assertFalse((self.folder / "none.nc").exists())
 
     def test_a_place_that_is_taken_stays(self):
