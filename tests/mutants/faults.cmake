@@ -1971,3 +1971,11 @@ livens_mutant(NAME bounces_without_rest
               NEW [[one.closes = hop < 0 || rebound <= slow;]]
               TESTS_OF unit_io
               MUST_FAIL Stops.BallComesToRestBehindBouncesWithoutEnd)
+
+# What one rank hands on is not taken off by the other.
+livens_mutant(NAME transfer_sign
+              FILE spacetime/mixed/rank_block.cpp
+              OLD [[residual_[row] += sign * transfers_[current_][i]]]
+              NEW [[residual_[row] += std::abs(sign) * transfers_[current_][i]]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL OnRanks.StatesAreThoseOfTheSerialRun)
