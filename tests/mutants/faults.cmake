@@ -1975,7 +1975,7 @@ livens_mutant(NAME bounces_without_rest
 # What one rank hands on is not taken off by the other.
 livens_mutant(NAME transfer_sign
               FILE spacetime/mixed/rank_block.cpp
-              OLD [[residual_[row] += sign * transfers_[current_][i]]]
-              NEW [[residual_[row] += std::abs(sign) * transfers_[current_][i]]]
+              OLD [[+= sign * transfers_]]
+              NEW [[+= std::abs(sign) * transfers_]]
               TESTS_OF unit_spacetime
               MUST_FAIL OnRanks.StatesAreThoseOfTheSerialRun)
