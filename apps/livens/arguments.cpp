@@ -149,11 +149,11 @@ void add_import_command(CLI::App& app, Arguments& a)
 void add_solve_command(CLI::App& app, Arguments& a)
 {
     const auto given = arguments_of<SolveArguments>();
-    CLI::App& solve = add_command(app, a, "solve", "Solve scenarios and write result files",
-                                  [given](const Common& common) {
-                        return given->is_distributed ? distributed_command(*given, common)
-                                                     : solve_command(*given, common);
-                    });
+    CLI::App& solve =
+        add_command(app, a, "solve", "Solve scenarios and write result files", [given](const Common& common) {
+            return given->is_distributed ? distributed_command(*given, common)
+                                         : solve_command(*given, common);
+        });
     solve.add_option("FILE", given->scenarios, "scenario (TOML), or several")
         ->required()
         ->type_name("FILE.toml");

@@ -33,7 +33,7 @@ struct SolveArguments {
     int jobs = 0;         ///< scenarios at a time; 0: one for each processor
     int threads = -1;     ///< of each motion; -1: as the scenario says
     bool is_distributed = false;   ///< by all processes that mpirun has started
-    std::string simd;     ///< set of instructions; empty: what LIVENS_SIMD says, else AVX2 if it is there
+    std::string simd;   ///< set of instructions; empty: what LIVENS_SIMD says, else AVX2 if it is there
 };
 int solve_command(const SolveArguments& arguments, const Common& common);
 /// The same of one scenario by several processes.

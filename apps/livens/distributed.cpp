@@ -75,9 +75,10 @@ void check_arguments(const SolveArguments& arguments)
                                   "(-DLIVENS_PETSC=ON)" +
                                       how);
     if (!is_started_by_mpirun())
-        throw failure(exit_usage, "'--distributed' is for processes that mpirun has started: mpirun -n 4 livens "
-                                  "solve .. --distributed" +
-                                      how);
+        throw failure(exit_usage,
+                      "'--distributed' is for processes that mpirun has started: mpirun -n 4 livens "
+                      "solve .. --distributed" +
+                          how);
     if (arguments.scenarios.size() > 1)
         throw failure(exit_usage, "'--distributed' solves one scenario, and several are given");
     if (!arguments.csv.empty() || !arguments.guess.empty() || arguments.roots > 1)
@@ -124,11 +125,11 @@ std::string work_in_words(const RankWork& work, Ranks& ranks)
     double all[] = {most[0], most[2]};
     ranks.largest(most);
     ranks.sum(all);
-    return fmt::format("{} processes; a process has {:.0f} of {:.0f} elements at most, sends {:.0f} messages and "
-                       "{:.3g} MB, and takes {:.3g} Gflop to eliminate its own; {:.3g} MB are sent in all; the "
-                       "chain has {} unknowns",
-                       ranks.size(), most[0], all[0], most[1], 1e-6 * most[2], 1e-9 * most[3], 1e-6 * all[1],
-                       work.n_chain);
+    return fmt::format(
+        "{} processes; a process has {:.0f} of {:.0f} elements at most, sends {:.0f} messages and "
+        "{:.3g} MB, and takes {:.3g} Gflop to eliminate its own; {:.3g} MB are sent in all; the "
+        "chain has {} unknowns",
+        ranks.size(), most[0], all[0], most[1], 1e-6 * most[2], 1e-9 * most[3], 1e-6 * all[1], work.n_chain);
 }
 
 std::string json_of(const Run& run, const std::string& output, const std::string& words, int exit_code)
@@ -151,8 +152,8 @@ std::string summary_of(const Run& run, const TimeMesh& mesh, const std::string& 
     add_verdict(summary, run, mesh.end());
     summary.figure("method", fmt::format("{}, {} elements in 1 block, {} unknowns", run.method,
                                          mesh.n_elements(), run.report.unknowns));
-    summary.figure("solved", fmt::format("{:.6g} s to {:.6g} s of motion in {:.3g} s", mesh.start(), mesh.end(),
-                                         seconds));
+    summary.figure("solved", fmt::format("{:.6g} s to {:.6g} s of motion in {:.3g} s", mesh.start(),
+                                         mesh.end(), seconds));
     summary.figure("iterations", fmt::format("{}, {} factorisations", run.report.newton_iterations,
                                              run.report.factorisations));
     summary.figure("distributed", words);

@@ -52,6 +52,7 @@ FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 FOREIGN = [
     (r"Eigen/", {"solvers"}),   # whose target renames its namespace, see cmake/rooms.cmake
     (r"suitesparse/|umfpack|metis", {"solvers"}),
+    (r"petsc|mpi\.h", {"solvers"}),
     (r"toml\+\+/|toml\.hpp", {"io"}),
     (r"netcdf|hdf5|H5", set()),   # io reads and writes it itself
     (r"fmt/", {"io", "apps"}),

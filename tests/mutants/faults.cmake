@@ -1971,3 +1971,11 @@ livens_mutant(NAME bounces_without_rest
               NEW [[one.closes = hop < 0 || rebound <= slow;]]
               TESTS_OF unit_io
               MUST_FAIL Stops.BallComesToRestBehindBouncesWithoutEnd)
+
+# What one rank hands on is not taken off by the other.
+livens_mutant(NAME transfer_sign
+              FILE spacetime/mixed/rank_block.cpp
+              OLD [[+= sign * transfers_]]
+              NEW [[+= std::abs(sign) * transfers_]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL OnRanks.StatesAreThoseOfTheSerialRun)

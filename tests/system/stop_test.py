@@ -54,10 +54,10 @@ class Stops(ProgramTest):
         self.assertEqual(program.returncode, 0)
         return used.ru_utime + used.ru_stime
 
-    def after_signal(self, scenario, at):
+    def after_signal(self, scenario, at, *options):
         """CPU seconds that a run takes after SIGINT, which comes when it has used `at` of them."""
         (self.folder / "run.nc").unlink(missing_ok=True)
-        program = subprocess.Popen([PROGRAM, "solve", scenario, "-q", "-o", "run.nc"], cwd=self.folder,
+        program = subprocess.Popen([PROGRAM, "solve", scenario, "-q", "-o", "run.nc", *options], cwd=self.folder,
                                    stderr=subprocess.DEVNULL)
         while program.poll() is None and cpu_seconds(program.pid) < at:
             time.sleep(0.01)
@@ -83,6 +83,15 @@ class Stops(ProgramTest):
         for part in (0.05, 0.15, 0.3):
             self.assertLess(self.after_signal("run.toml", part * whole), 2)
             self.expect(0, "info", "run.nc")
+
+    def test_threads_of_one_motion_stop_at_once(self):
+        """In the march that all of time begins with, in rows and tangents, in the elimination: of two threads either."""
+        self.write("run.toml", FREE_BODY % (2000, 20000, "false") + 'family = "mixed"\ndegree = 1\nestimate = "none"\n')
+        whole = self.whole_run("run.toml")
+        for part in (0.05, 0.2, 0.35, 0.5):
+            self.assertLess(self.after_signal("run.toml", part * whole, "--threads", "2"), 2)
+            self.expect(0, "info", "run.nc")   # whole, if short
+            self.assertEqual([file.name for file in self.folder.iterdir() if file.name.endswith(".tmp")], [])
 
     def test_chains_stop_at_once(self):
         """Large motions are not checked any more; to write this one takes a second."""

@@ -74,7 +74,8 @@ struct Verdict : InvariantFigures, ResolutionFigures, ErrorFigures {
     ViolationReport violations;   ///< means only where constraints hold weakly, nothing between nodes
 };
 
-/// Figures of one of several parts of a motion by itself, with all its series: parts are joined by who has them.
+/// Figures of one of several parts of a motion by itself, with all its series: parts are joined by who has
+/// them.
 Verdict measure_part(const Model& model, const Motion& part);
 /// Reasons that invariants and zigzags of a motion tell whose constraints hold weakly, as judge() has them.
 void weigh_weak(Verdict& verdict, const SolveReport& report);

@@ -18,7 +18,7 @@ namespace livens::inline io_internal {
 /// Each rank writes its part of the motion into the same file, the first one all else, and puts it in place
 /// when all have. There are no samples at output times in it: `livens sample` and `livens export` make these.
 /// See write_run(); called by all ranks. All must see the folder.
-[[gnu::visibility("default")]] void write_parts(const std::filesystem::path& file, const Scenario& scenario, const Run& part, Ranks& ranks,
-                 bool spares_others);
+[[gnu::visibility("default")]] void write_parts(const std::filesystem::path& file, const Scenario& scenario,
+                                                const Run& part, Ranks& ranks, bool spares_others);
 
 }   // namespace livens::inline io_internal

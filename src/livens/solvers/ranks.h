@@ -11,7 +11,8 @@
 namespace livens::inline solvers_internal {
 
 /// Another rank is lost, or has failed: nobody can go on.
-struct [[gnu::visibility("default")]] RankLost : std::runtime_error {
+struct [[gnu::visibility("default")]] RankLost : std::runtime_error
+{
     using std::runtime_error::runtime_error;
 };
 
@@ -27,10 +28,7 @@ struct ChainRows {
     std::vector<int> columns;   ///< numbers of unknowns, ascending
     std::vector<double> values;
 
-    int n_rows() const
-    {
-        return columns.empty() ? 0 : static_cast<int>(values.size() / columns.size());
-    }
+    int n_rows() const { return columns.empty() ? 0 : static_cast<int>(values.size() / columns.size()); }
 };
 
 /// The system that is left when every rank has eliminated what is its own. All ranks call in the same order.
@@ -45,7 +43,8 @@ public:
 
 /// Ranks as one of them sees them. All but send() and receive() is called by all ranks in the same order. A
 /// rank that is lost ends all others: RankLost.
-class [[gnu::visibility("default")]] Ranks {
+class [[gnu::visibility("default")]] Ranks
+{
 public:
     Ranks() = default;
     Ranks(const Ranks&) = delete;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ranks that are processes of MPI, and their chain solved by PETSc with MUMPS, which keeps a part of it in every
-// process. Without LIVENS_PETSC there are none.
+// Ranks that are processes of MPI, and their chain solved by PETSc with MUMPS, which keeps a part of it in
+// every process. Without LIVENS_PETSC there are none.
 #include <cstdlib>
 #include <new>
 
@@ -68,7 +68,8 @@ public:
         check(VecGetArrayRead(wanted_, &found), "share a solution");
         std::copy_n(found, x.size(), x.begin());
         check(VecRestoreArrayRead(wanted_, &found), "share a solution");
-        ranks_.count(1, static_cast<long long>(x.size_bytes()));   // what is not its own comes from neighbours
+        ranks_.count(1,
+                     static_cast<long long>(x.size_bytes()));   // what is not its own comes from neighbours
     }
 
 private:
@@ -149,7 +150,8 @@ public:
     std::unique_ptr<RankChain> make_chain() override { return std::make_unique<PetscChain>(*this); }
 
 protected:
-    static constexpr std::size_t most = std::size_t{1} << 27;   // numbers in a message: their bytes fit an int
+    static constexpr std::size_t most = std::size_t{1}
+                                        << 27;   // numbers in a message: their bytes fit an int
 
     void put(int to, std::span<const double> values) override
     {
@@ -165,7 +167,8 @@ protected:
             const auto some = values.first(std::min(values.size(), most));
             MPI_Status status;
             int n = 0;
-            MPI_Recv(some.data(), static_cast<int>(some.size()), MPI_DOUBLE, from, 0, MPI_COMM_WORLD, &status);
+            MPI_Recv(some.data(), static_cast<int>(some.size()), MPI_DOUBLE, from, 0, MPI_COMM_WORLD,
+                     &status);
             MPI_Get_count(&status, MPI_DOUBLE, &n);
             if (n != static_cast<int>(some.size()))
                 throw std::logic_error("a message between ranks is not as long as it is expected");

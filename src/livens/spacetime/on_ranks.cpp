@@ -30,10 +30,10 @@ namespace livens::inline spacetime_internal {
 
 namespace {
 
-constexpr double doubtful_distance = 0.05;   // as a march compares itself with its guess
+constexpr double far_from_guess = 0.05;   // as a march compares itself with its guess
 
-[[noreturn]] void refuse(const char* code, const char* path, const std::string& what, const std::string& given,
-                         const std::string& help)
+[[noreturn]] void refuse(const char* code, const char* path, const std::string& what,
+                         const std::string& given, const std::string& help)
 {
     throw InputError({code, path, what, given, "", "docs/howto/cluster.md", help});
 }
@@ -63,7 +63,8 @@ State state_of(const std::vector<double>& numbers)
 /// as those before.
 class RelayedMarch {
 public:
-    RelayedMarch(const Model& model, const TimeMesh& mesh, const Ends& ends, const Mixed& method, Ranks& ranks)
+    RelayedMarch(const Model& model, const TimeMesh& mesh, const Ends& ends, const Mixed& method,
+                 Ranks& ranks)
         : model_(model), mesh_(mesh), ends_(ends), method_(method), ranks_(ranks)
     {}
 
@@ -109,12 +110,12 @@ void compare(const Model& model, const Motion& part, const Guess& guess, Ranks& 
     for (int end = 0; guess && end <= part.n_elements(); ++end) {
         const double t = part.mesh.ends[end];
         const double here = distance_between(part.at_end(end).X, guess(t).X, model.length());
-        if (here > doubtful_distance) first = std::min(first, t);
+        if (here > far_from_guess) first = std::min(first, t);
         if (here > distance) at = t;
         raise_to(distance, here);
     }
     report.guess_distance = ranks.largest(distance);
-    const bool is_doubtful = report.guess_distance > doubtful_distance;
+    const bool is_doubtful = report.guess_distance > far_from_guess;
     const double earliest = is_doubtful ? first : report.guess_distance == distance ? at : first;
     const double found = -ranks.largest(-earliest);
     report.guess_distance_time = std::isfinite(found) ? found : 0;
@@ -185,10 +186,14 @@ void join_balances(Balance& part, BalanceFigures& figures, Ranks& ranks)
         raise_to(f.largest_linear_momentum_drift, part.linear_momentum_drift[e]);
         raise_to(f.largest_angular_momentum_drift, part.angular_momentum_drift[e]);
     }
-    std::array<double*, 9> all{&f.largest_kinetic,      &f.largest_momentum,
-                               &f.largest_moment,       &f.reference_energy,
-                               &f.largest_change,       &f.largest_impulse,
-                               &f.largest_energy_drift, &f.largest_linear_momentum_drift,
+    std::array<double*, 9> all{&f.largest_kinetic,
+                               &f.largest_momentum,
+                               &f.largest_moment,
+                               &f.reference_energy,
+                               &f.largest_change,
+                               &f.largest_impulse,
+                               &f.largest_energy_drift,
+                               &f.largest_linear_momentum_drift,
                                &f.largest_angular_momentum_drift};
     std::array<double, 9> values{};
     for (std::size_t i = 0; i < all.size(); ++i) values[i] = *all[i];
@@ -232,7 +237,8 @@ void lower_orders(const Model& model, const TimeMesh& mesh, Motion& part)
         *stated = std::min(*stated, 1);
 }
 
-WindowOptions options_on_ranks(const Model& model, const Ends& ends, const SolveOptions& options, Ranks& ranks)
+WindowOptions options_on_ranks(const Model& model, const Ends& ends, const SolveOptions& options,
+                               Ranks& ranks)
 {
     WindowOptions w = window_options(model, options);
     w.direction = ends.is_backwards() ? -1 : 1;
@@ -262,7 +268,8 @@ void take_work(const MixedWindow& window, const TimeMesh& mesh, const Traffic& b
             block->n_chain(),
             block->factors().flops(),
             {ranks.traffic().messages - before.messages, ranks.traffic().bytes - before.bytes}};
-    std::array<double, 2> sums{static_cast<double>(block->n_own()), static_cast<double>(block->factors().entries())};
+    std::array<double, 2> sums{static_cast<double>(block->n_own()),
+                               static_cast<double>(block->factors().entries())};
     ranks.sum(sums);
     solution.report.unknowns = static_cast<int>(sums[0]);
     solution.report.factor_entries = static_cast<long long>(sums[1]);
@@ -278,25 +285,25 @@ void check_ranks(const Model& model, const Problem& problem, const Time& time, c
     const auto* mesh = std::get_if<TimeMesh>(&time);
     const std::string all = "solve it without '--distributed'";
     if (elements == nullptr || mesh == nullptr)
-        refuse("ranks-method", "method.family", "only the elements of the family mixed are divided among ranks",
-               name_of(method), "family = \"mixed\" with a number of elements, or " + all);
+        refuse("ranks-method", "method.family",
+               "only the elements of the family mixed are divided among ranks", name_of(method),
+               "the family mixed with a number of elements, or " + all);
     if (elements->window != 0 && elements->window < mesh->n_elements())
         refuse("ranks-method", "method.window", "blocks that follow each other are not divided among ranks",
-               std::to_string(elements->window), "window = \"all\", or " + all);
+               std::to_string(elements->window), "all elements at once, or " + all);
     if (elements->basis != Mixed::Basis::lagrange)
         refuse("ranks-method", "method.basis", "functions of several elements are not divided among ranks",
-               std::string(mixed::basis_of(*elements).word),
-               "basis = \"lagrange\", or " + all);
+               std::string(mixed::basis_of(*elements).word), "Lagrange's basis, or " + all);
     if (elements->linear_solver != SparseBackend::eigen || options.condition)
         refuse("ranks-method", options.condition ? "method.condition" : "method.linear_solver",
                "ranks have no matrix of the whole", "", "leave it out, or " + all);
     if (problem.conditions.has_components() || !problem.unknowns.is_empty() || options.roots > 1)
         refuse("ranks-conditions", "start",
-               "conditions by component, periodic motions and unknown numbers are not divided among ranks", "",
-               "a state at one end, or positions or momenta at both; or " + all);
+               "conditions by component, periodic motions and unknown numbers are not divided among ranks",
+               "", "a state at one end, or positions or momenta at both; or " + all);
     if (model.has_events() || model.has_rotors())
-        refuse("ranks-conditions", "event", "events and inertias along coordinates are not divided among ranks",
-               "", all);
+        refuse("ranks-conditions", "event",
+               "events and inertias along coordinates are not divided among ranks", "", all);
     const std::vector<int> parts = parts_of_ranks(model, *mesh, n_ranks);
     for (std::size_t i = 1; i < parts.size(); ++i)
         if (parts[i] <= parts[i - 1])

@@ -31,7 +31,7 @@ type = "revolute"
 between = ["world", "rod"]
 at = [0, 0, 0]
 axis = [0, 1, 0]
-coordinate = "60 deg"
+rate = 3
 [time]
 end = 1
 elements = 40
@@ -70,7 +70,8 @@ TEST_F(Parts, AreTheFileThatOneWrites)
         EXPECT_EQ(run.motion.mesh.ends, alone.motion.mesh.ends);
         EXPECT_EQ(run.motion.block_ends, alone.motion.block_ends);
         EXPECT_EQ(run.output, alone.motion.mesh.ends);
-        const auto compare = [&](const std::vector<double>& a, const std::vector<double>& b, const char* what) {
+        const auto compare = [&](const std::vector<double>& a, const std::vector<double>& b,
+                                 const char* what) {
             ASSERT_EQ(a.size(), b.size()) << what;
             double off = 0, size = 1;
             for (std::size_t i = 0; i < a.size(); ++i) {

@@ -486,6 +486,7 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                    "io-unreadable"});   // here, of meshes, of hostile files
     others.insert({"conditions-dependent", "conditions-joints", "conditions-method", "conditions-not-smooth",
                    "conditions-too-few", "conditions-too-many", "conditions-twice", "conditions-unknown",
+                   "ranks-conditions", "ranks-elements", "ranks-method",
                    "threads-out-of-range"});   // known_test.cpp, threads_test.cpp
     others.insert({"point-body", "point-unknown", "gravity-differs", "include-file", "include-ignored",
                    "include-limit", "include-path", "include-ring", "include-source"});   // their own tests

@@ -3,8 +3,9 @@
 // long as it is said to be.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <mutex>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -153,6 +154,33 @@ TEST(OnRanks, NobodyFormsElementsOfOthers)
         }
         EXPECT_EQ(formed, one.mesh.n_elements());
     }
+}
+
+/// By a tree and along borders: messages of a rank grow as the logarithm of their number, its bytes hardly;
+/// the first one, which has the chain here, sends to all.
+TEST(OnRanks, WhatIsSentGrowsAsIsSaid)
+{
+    Case one = cases()[0];
+    one.mesh = make_time_mesh(0, 0.4, 256);
+    const int border = 2 * 24 + 2 + 2 * 6;   // numbers of X, P, rods and rigidity
+    std::vector<long long> bytes;
+    for (int n = 4; n <= 64; n *= 2) {
+        const std::vector<Part> parts = solved_on(one, n);
+        Traffic most;
+        long long flops = 0;
+        for (std::size_t r = 1; r < parts.size(); ++r) {
+            most.bytes = std::max(most.bytes, parts[r].work.of_solution.bytes);
+            most.messages = std::max(most.messages, parts[r].work.of_solution.messages);
+            flops = std::max(flops, parts[r].work.flops);
+        }
+        bytes.push_back(most.bytes);
+        const Traffic first = parts[0].work.of_solution;
+        EXPECT_EQ(parts[0].work.n_chain, 2 * border * (n - 1));
+        EXPECT_EQ(parts[1].work.n_left, 2 * border);
+        std::printf("%2d ranks: %lld messages, %lld bytes, %lld flops; of the first %lld, %lld\n", n,
+                    most.messages, most.bytes, flops, first.messages, first.bytes);
+    }
+    EXPECT_LT(10 * bytes.back(), 11 * bytes.front());
 }
 
 TEST(OnRanks, WhatIsNotDividedIsRefused)

@@ -180,8 +180,8 @@ namespace {
 void write_all(int out, std::uint64_t offset, std::string_view bytes, const fs::path& file)
 {
     while (!bytes.empty()) {
-        const ssize_t n = insistent(
-            [&] { return ::pwrite(out, bytes.data(), bytes.size(), static_cast<off_t>(offset)); });
+        const ssize_t n =
+            insistent([&] { return ::pwrite(out, bytes.data(), bytes.size(), static_cast<off_t>(offset)); });
         if (n < 0) fail("cannot write " + quoted(file), errno);
         bytes.remove_prefix(static_cast<std::size_t>(n));
         offset += static_cast<std::uint64_t>(n);

@@ -198,9 +198,9 @@ void ClassicWriter::divide()
     }
     for (std::size_t i = 0; i < variables_.size(); ++i) {
         ClassicVariable& variable = variables_[i];
-        Progress& progress = progress_[i];
-        const auto front = static_cast<std::size_t>(named(dimensions_, variable.dimensions.front()) -
-                                                    dimensions_.data());
+        WrittenSoFar& progress = progress_[i];
+        const auto front =
+            static_cast<std::size_t>(named(dimensions_, variable.dimensions.front()) - dimensions_.data());
         progress.expected = shared_->is_first() ? variable.n_bytes : 0;
         if (!slabs[front]) continue;
         assert(variable.type == NumberType::real);
@@ -218,7 +218,7 @@ void ClassicWriter::divide()
 /// The checksum of a variable whose part is complete.
 void ClassicWriter::pass_on(int variable)
 {
-    Progress& progress = progress_[variable];
+    WrittenSoFar& progress = progress_[variable];
     if (!progress.is_divided || progress.is_passed_on || progress.done < progress.expected) return;
     if (progress.expected == 0) progress.checksum.go_on_from(shared_->state_before(variable));
     shared_->pass_on(variable, progress.checksum.state());
@@ -240,7 +240,7 @@ void ClassicWriter::begin(ByteSink sink)
 template <class Put>
 void ClassicWriter::write(int variable, std::size_t n_bytes, const Put& put)
 {
-    Progress& progress = progress_[variable];
+    WrittenSoFar& progress = progress_[variable];
     // The checksum takes words of eight bytes, so pieces may end elsewhere only at the very end.
     assert(progress.done % 8 == 0 && progress.done + n_bytes <= progress.expected);
     if (progress.is_divided && progress.done == 0)
@@ -294,7 +294,7 @@ void ClassicWriter::append(int variable, std::string_view bytes)
 void ClassicWriter::finish()
 {
     for (std::size_t i = 0; shared_ != nullptr && i < variables_.size(); ++i) pass_on(static_cast<int>(i));
-    for (Progress& progress : progress_)
+    for (WrittenSoFar& progress : progress_)
         if (progress.is_divided) progress.checksum.go_on_from(shared_->last_state(progress.checksum.state()));
     if (shared_ != nullptr && !shared_->is_first()) return;
     for (std::size_t i = 0; i < variables_.size(); ++i) {

@@ -66,8 +66,9 @@ struct Slab {
     std::uint64_t before = 0, total = 0, skipped = 0;
 };
 
-/// What writers of one file know of each other. Each has declared the same, appends its own values of variables
-/// whose first dimension is divided, real ones, and puts them where they belong; the first writes all others.
+/// What writers of one file know of each other. Each has declared the same, appends its own values of
+/// variables whose first dimension is divided, real ones, and puts them where they belong; the first writes
+/// all others.
 class SharedFile {
 public:
     virtual ~SharedFile() = default;
@@ -79,6 +80,18 @@ public:
     virtual void pass_on(int variable, std::uint64_t state) = 0;
     /// Those of the last part, for the first one.
     virtual std::uint64_t last_state(std::uint64_t own) = 0;
+};
+
+/// How far a variable is written.
+struct WrittenSoFar {
+    std::uint64_t done = 0;   ///< bytes
+    Checksum checksum{};
+    std::size_t checksum_place = 0;   ///< in the header
+    // Of what is shared: bytes that this part has, how many the parts before have, numbers to be left
+    // out.
+    std::uint64_t expected = 0, offset = 0;
+    std::size_t left_out = 0;
+    bool is_divided = false, is_passed_on = false;
 };
 
 /// Declare everything, begin(), append() the values of every variable, of several in turns if need be,
@@ -106,15 +119,6 @@ public:
     void finish();
 
 private:
-    struct Progress {
-        std::uint64_t done = 0;   ///< bytes
-        Checksum checksum{};
-        std::size_t checksum_place = 0;   ///< in the header
-        // Of what is shared: bytes that this part has, how many the parts before have, numbers to be left out.
-        std::uint64_t expected = 0, offset = 0;
-        std::size_t left_out = 0;
-        bool is_divided = false, is_passed_on = false;
-    };
     void divide();
     void pass_on(int variable);
 
@@ -133,7 +137,7 @@ private:
     std::vector<ClassicDimension> dimensions_;
     std::vector<Attribute> attributes_;
     std::vector<ClassicVariable> variables_;
-    std::vector<Progress> progress_;
+    std::vector<WrittenSoFar> progress_;
     std::string header_;
     std::size_t checksum_place_ = 0;
     ByteSink sink_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One result file by several processes: a variable's numbers lie in the order of time, so that every process
-// has one place in each; a variable's checksum goes from process to process, as its numbers follow each other.
+// has one place in each; a variable's checksum goes from process to process, as its numbers follow each
+// other.
 #include "livens/io/parts.h"
 
 #include <bit>

@@ -105,8 +105,8 @@ struct StretchFactors {
 
     void clear();
     void end_pivot();
-    /// For `n` pivots, by those that are there: what follows time goes on as it began. What grows by itself would
-    /// take three times its size on the way.
+    /// For `n` pivots, by those that are there: what follows time goes on as it began. What grows by itself
+    /// would take three times its size on the way.
     void reserve(int n);
 };
 

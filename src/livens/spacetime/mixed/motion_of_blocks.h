@@ -36,7 +36,7 @@ public:
 private:
     struct Block {
         std::vector<double> X, P, multipliers, rigidity,
-            denominators;   ///< nodes of all elements, none shared
+            denominators;                       ///< nodes of all elements, none shared
         std::vector<Matrix34> P_start, P_end;   ///< empty: nothing is handed on there
         int n_elements = 0;
     };

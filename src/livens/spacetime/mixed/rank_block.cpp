@@ -18,7 +18,8 @@ RankBlock::RankBlock(Equations equations, Ranks& ranks)
         Side& one = sides_[at_end ? 1 : 0];
         one = side(at_end);
         const int numbers = static_cast<int>(one.columns.size());
-        const int border = ranks.rank() - (at_end ? 0 : 1), first = n + (at_end ? static_cast<int>(sides_[0].rows.size()) : 0);
+        const int border = ranks.rank() - (at_end ? 0 : 1),
+                  first = n + (at_end ? static_cast<int>(sides_[0].rows.size()) : 0);
         for (int i = 0; i < numbers; ++i) {
             places_.columns.push_back(one.columns[i]);
             places_.unknowns.push_back(2 * numbers * border + i);
@@ -104,7 +105,8 @@ void RankBlock::share_guess()
 bool RankBlock::residual()
 {
     const bool is_finite = Block::residual();
-    for_transfers([&](int row, std::size_t i, double sign) { residual_[row] += sign * transfers_[current_][i]; });
+    for_transfers(
+        [&](int row, std::size_t i, double sign) { residual_[row] += sign * transfers_[current_][i]; });
     return ranks_.all(is_finite);
 }
 

@@ -45,10 +45,7 @@ private:
         double sign = 0;   ///< of transfers
     };
     Side side(bool at_end) const;
-    int n_transfers() const
-    {
-        return static_cast<int>(sides_[0].rows.size() + sides_[1].rows.size());
-    }
+    int n_transfers() const { return static_cast<int>(sides_[0].rows.size() + sides_[1].rows.size()); }
     template <class Act>
     void for_transfers(const Act& act) const;
 

@@ -137,7 +137,7 @@ MixedWindow::~MixedWindow() = default;
 NewtonProblem& MixedWindow::equations() { return *block_; }
 
 /// P where X is known, else the momenta of the state, which turn with the bodies.
-EndMomentum MixedWindow::momentum_of(bool X_known, const End& end) const
+EndMomentum MixedWindow::momentum_of(bool X_known, const EndOfBlock& end) const
 {
     EndMomentum result{end.P, {}};
     for (std::size_t b = 0; !X_known && b < end.P.size(); ++b)
@@ -192,7 +192,7 @@ bool MixedWindow::open(int first, int last, SolveReport&)
     const int gauss_points = method_.gauss_points > 0 ? method_.gauss_points : exact_points(method_);
     FieldSpace space(coordinates_, {functions, is_equal ? functions : functions.lower(), gauss_points, tears},
                      numbering, method_.start, method_.end_multiplier);
-    const auto momentum_at = [&](int element_end, bool X_known, const End& end) {
+    const auto momentum_at = [&](int element_end, bool X_known, const EndOfBlock& end) {
         const bool is_inside = element_end > first && element_end < last;   // nothing is given there
         if (!is_inside) return momentum_of(X_known, end);
         return EndMomentum{std::vector<Matrix34>(tables_.model->bodies().size()), {}};
@@ -285,7 +285,7 @@ void MixedWindow::fix_known()
     const Given given = known_of_part();
     if (given_.X_at_start) fields.X0 = coordinates_.gather(start_.state.X);   // x_0 is zero then
     for (const bool at_end : {false, true}) {
-        const End& end = at_end ? end_ : start_;
+        const EndOfBlock& end = at_end ? end_ : start_;
         const int A = at_end ? last : 0;
         if (at_end ? given.X_at_end : given.X_at_start) {
             const std::vector<double> x = coordinates_.gather(end.state.X);
@@ -314,7 +314,7 @@ AcceptedElements MixedWindow::close(const AcceptanceCriteria&, SolveReport& repo
 bool MixedWindow::hand_on(SolveReport& report)
 {
     const bool backwards = ends_.is_backwards();
-    End& end = backwards ? end_ : start_;
+    EndOfBlock& end = backwards ? end_ : start_;
     end.state.t = mesh_.ends[backwards ? first_ : last_];
     end.state.X = block_->equations().space().end_position(block_->fields(), !backwards);
     end.P = block_->equations().end_momentum(block_->fields(), !backwards);

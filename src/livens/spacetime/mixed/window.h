@@ -34,6 +34,12 @@ int shortest_block(const Mixed& method);
 /// Functions of time on the elements first..last - 1 of a mesh.
 TimeSpace space_of(const Model& model, const Mixed& method, const TimeMesh& mesh, int first, int last);
 
+/// What is known at an end of the open block.
+struct EndOfBlock {
+    State state;
+    std::vector<Matrix34> P;
+};
+
 class MixedWindow final : public Window {
 public:
     /// References must outlive the window; `tables` are with rigidity.
@@ -54,12 +60,7 @@ public:
     const mixed::RankBlock* of_rank() const;
 
 private:
-    /// What is known at an end of the open block.
-    struct End {
-        State state;
-        std::vector<Matrix34> P;
-    };
-    mixed::EndMomentum momentum_of(bool X_known, const End& end) const;
+    mixed::EndMomentum momentum_of(bool X_known, const EndOfBlock& end) const;
     void take_guess(const Guess& guess);
     void put_multipliers(int A, const State& state);
     void fix_known();
@@ -74,7 +75,7 @@ private:
     std::unique_ptr<mixed::Border> border_;   // of conditions by component, or null
     mixed::Coordinates coordinates_;
     mixed::Given given_;
-    End start_, end_;
+    EndOfBlock start_, end_;
     Ranks* ranks_;
     int first_ = 0, last_ = 0;   // elements of the block: of the window, or of this rank
     std::unique_ptr<mixed::Block> block_;

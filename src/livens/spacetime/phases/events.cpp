@@ -47,7 +47,39 @@ std::string names_of_beginning(const Model& model, double t, double gap)
     return names;
 }
 
+/// Of an element: what is left of one behind an event is no element of its own.
+constexpr double least_rest = 1e-3;
+
 }   // namespace
+
+Time part_of(const Time& time, double first, double last, double accuracy, double first_length)
+{
+    const double gap = nearest_ends * (end_of(time) - start_of(time));
+    const auto inside = [&](const std::vector<double>& all) {
+        std::vector<double> some;
+        for (const double t : all)
+            if (t > first + gap && t <= last) some.push_back(t);
+        return some;
+    };
+    const auto* mesh = std::get_if<TimeMesh>(&time);
+    if (mesh == nullptr)
+        return Span{first, last, accuracy, inside(std::get<Span>(time).output), first_length};
+    TimeMesh part{{first}, inside(mesh->required), inside(mesh->bends)};
+    const std::vector<double> ends = inside(mesh->ends);
+    const bool is_end = std::ranges::binary_search(mesh->ends, first);
+    for (const double t : ends) {
+        // Where an event came before a bend that was expected, that has been this event.
+        const std::size_t next =
+            static_cast<std::size_t>(std::ranges::upper_bound(mesh->ends, t) - mesh->ends.begin());
+        const double length = next < mesh->ends.size() ? mesh->ends[next] - t : t - first;
+        const bool is_met = std::ranges::binary_search(mesh->bends, t) && t - first < 0.5 * length;
+        const bool is_rest =
+            t - first < least_rest * length && t < last && !std::ranges::binary_search(mesh->required, t);
+        if (part.ends.size() > 1 || is_end || (!is_met && !is_rest)) part.ends.push_back(t);
+    }
+    std::erase_if(part.bends, [&](double t) { return !std::ranges::binary_search(part.ends, t); });
+    return part;
+}
 
 std::vector<double> events_inside(const Model& model, double start, double end)
 {

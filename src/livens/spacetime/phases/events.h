@@ -25,6 +25,9 @@ void widen(Motion& motion, const Model& model, const ActingModel& acting);
 /// `jumps`: there is an impact between them.
 void join(Motion& whole, Motion&& next, bool jumps);
 
+/// From an instant on, until another that it may have as an end; elements like those before.
+Time part_of(const Time& time, double first, double last, double accuracy, double first_length);
+
 /// Velocities become others where the motion ends, as at an impact.
 void jump_at_end(Motion& motion, const Model& model, const std::vector<Matrix34>& V);
 

@@ -26,41 +26,9 @@ namespace {
 /// More would be a storm: as many as that in a millionth of the time, or in all.
 constexpr int stormy = 200, most_events = 100'000, most_beside = 500;   // of a neighbour in a window
 constexpr double no_time = 1e-6;
-/// Of an element: what is left of one behind an event is no element of its own.
-constexpr double least_rest = 1e-3;
 constexpr int most_turns = 60;
 /// Of the scale of a stop's row, at the start of the motion.
 constexpr double touching_start = 1e-12;
-
-/// From an instant on, until another that it may have as an end.
-Time part_of(const Time& time, double first, double last, double accuracy, double first_length)
-{
-    const double gap = nearest_ends * (end_of(time) - start_of(time));
-    const auto inside = [&](const std::vector<double>& all) {
-        std::vector<double> some;
-        for (const double t : all)
-            if (t > first + gap && t <= last) some.push_back(t);
-        return some;
-    };
-    const auto* mesh = std::get_if<TimeMesh>(&time);
-    if (mesh == nullptr)
-        return Span{first, last, accuracy, inside(std::get<Span>(time).output), first_length};
-    TimeMesh part{{first}, inside(mesh->required), inside(mesh->bends)};
-    const std::vector<double> ends = inside(mesh->ends);
-    const bool is_end = std::ranges::binary_search(mesh->ends, first);
-    for (const double t : ends) {
-        // Where an event came before a bend that was expected, that has been this event.
-        const std::size_t next =
-            static_cast<std::size_t>(std::ranges::upper_bound(mesh->ends, t) - mesh->ends.begin());
-        const double length = next < mesh->ends.size() ? mesh->ends[next] - t : t - first;
-        const bool is_met = std::ranges::binary_search(mesh->bends, t) && t - first < 0.5 * length;
-        const bool is_rest =
-            t - first < least_rest * length && t < last && !std::ranges::binary_search(mesh->required, t);
-        if (part.ends.size() > 1 || is_end || (!is_met && !is_rest)) part.ends.push_back(t);
-    }
-    std::erase_if(part.bends, [&](double t) { return !std::ranges::binary_search(part.ends, t); });
-    return part;
-}
 
 /// One phase after the other: up to what is known beforehand, or what the motion decides.
 class Chain {
