@@ -1979,3 +1979,35 @@ livens_mutant(NAME transfer_sign
               NEW [[+= std::abs(sign) * transfers_]]
               TESTS_OF unit_spacetime
               MUST_FAIL OnRanks.StatesAreThoseOfTheSerialRun)
+
+# States by the mass of what holds them.
+livens_mutant(NAME states_with_mass
+              FILE multibody/controllers.cpp
+              OLD [[along_axis(body, k, scale.mass * unit_of(state, scale))]]
+              NEW [[along_axis(body, k, unit_of(state, scale))]]
+              TESTS_OF unit_io
+              MUST_FAIL Controllers.HaveTheAccuracyThatIsAskedFor)
+
+# Controllers that are not asked at the start.
+livens_mutant(NAME first_sample_missed
+              FILE spacetime/phases/samplings.cpp
+              OLD [[if (k < 0 || std::abs(instant - state.t) > gap]]
+              NEW [[if (k < 1 || std::abs(instant - state.t) > gap]]
+              TESTS_OF unit_io
+              MUST_FAIL Controllers.ThatAreSampledAreTheirRecursion)
+
+# Reactions as if the loads that read them did nothing to them.
+livens_mutant(NAME reactions_without_friction
+              FILE dynamics/instant/reaction_mechanism.h
+              OLD [[all[j].force += factors[k] * by_unit[k][j].force;]]
+              NEW [[all[j].force += 0.0 * factors[k] * by_unit[k][j].force;]]
+              TESTS_OF unit_io
+              MUST_FAIL ReactionLaws.RubAsTheirEquationsSay)
+
+# Poles of controllers without what positions do to states.
+livens_mutant(NAME states_blind_to_positions
+              FILE statics/vibration_modes.cpp
+              OLD [[A(2 * n + k, i) = -z.by_q[]]
+              NEW [[A(2 * n + k, i) = -0.0 * z.by_q[]]
+              TESTS_OF unit_io
+              MUST_FAIL Controllers.AreAtRestWithTheirBodies)

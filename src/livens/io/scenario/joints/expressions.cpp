@@ -234,7 +234,9 @@ std::vector<Key> expression_keys(bool is_vector)
             Key{"inputs", types::named_texts,
                 "Symbols for quantities used in `expression`: joint coordinates, their rates, and sensor "
                 "readings, in rad, m and s, as in `{ phi = \"pivot.angle\", w = \"pivot.angle_rate\", x = "
-                "\"tip.x\" }`. An expression may also contain these names directly, `-10*pivot.angle`; names "
+                "\"tip.x\" }`; states and outputs of controllers, as in `\"pid.u\"`; and of loads reactions "
+                "of joints, as in `\"pivot.force\"`. An expression may also contain these names directly, "
+                "`-10*pivot.angle`; names "
                 "with blanks need quotes, `-10*'crank pin'.angle`."},
             Key{"breaks", types::list, "Times at which `expression` jumps or has a kink; elements end there.",
                 "s"}};
