@@ -18,7 +18,13 @@ struct EquilibriumOptions {
     std::function<bool()> goes_on{};   ///< asked before each step; false: cancelled
 };
 
-struct Equilibrium {
+/// Of the joints of a mechanism at rest.
+struct JointsAtRest {
+    std::vector<std::vector<double>> coordinates;   ///< of each joint, as it counts them: turns included
+    std::vector<int> closed_stops;                  ///< joints that push one way alone, and do so
+};
+
+struct Equilibrium : JointsAtRest {
     bool is_found = false;
     std::string message;   ///< where it was not found: why, and which body still accelerates
     State state;           ///< V = 0; found or not, the last one
@@ -30,11 +36,9 @@ struct Equilibrium {
     double acceleration = 0, angular_acceleration = 0;   ///< of that body's reference point, from rest
     std::vector<double> multipliers;                     ///< of all rows, least where joints are redundant
     std::vector<bool> joint_is_unique;
-    std::vector<SharedComponents> shared;           ///< of each joint that is not
-    std::vector<std::vector<double>> coordinates;   ///< of each joint, as it counts them: turns included
-    std::vector<std::string> notes;                 ///< of consistent_start()
-    std::vector<int> closed_stops;                  ///< joints that push one way alone, and do so
-    StabilityReport stability;                      ///< where it was found
+    std::vector<SharedComponents> shared;   ///< of each joint that is not
+    std::vector<std::string> notes;         ///< of consistent_start()
+    StabilityReport stability;              ///< where it was found
 };
 
 /// The equilibrium that a search from the start leads to: V = 0, drives and loads as they are at start.t,
