@@ -292,7 +292,7 @@ class Report(ProgramTest):
     def test_sizes(self):
         self.solve((SOURCE / "examples/four_bar.toml").read_text())
         self.assertLess(len(self.report().text.encode()), 850_000)
-        self.assertLess((SOURCE / "src/livens/io/report/page.html").stat().st_size, 680_000)
+        self.assertLess((SOURCE / "src/livens/io/report/page.html").stat().st_size, 690_000)
         self.solve(hundred(5, 125))
         page = self.report()
         self.assertGreaterEqual(len(page.arrays["pose"]) / sum(page.meta["pose"]["forms"]), 1000)

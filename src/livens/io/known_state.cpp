@@ -7,8 +7,10 @@ namespace livens {
 
 Scenario as_it_starts(Scenario scenario)
 {
-    if (scenario.model.has_events())
-        scenario.model = acting_at(scenario.model, start_of(scenario.time)).model;
+    if (!scenario.model.has_events()) return scenario;
+    Model now = acting_at(scenario.model, start_of(scenario.time)).model;
+    for (const Sampling& sampling : scenario.model.samplings()) now.add_sampling(sampling);
+    scenario.model = std::move(now);
     return scenario;
 }
 

@@ -25,11 +25,15 @@ void ControllerReader::measure(SizesOfStates& sizes) const
     const double start = time == nullptr ? 0 : time->number("start");
     const double duration = time == nullptr ? 1 : time->number("end") - start;
     const State at = builder_.model().start();
+    const Model& at_start = builder_.model();
     std::vector<double> numbers, reach;   // at the start, and by how much they may change
     for (const Inputs::Read& read : inputs_.reads) {
         const LawCoordinate& q = inputs_.coordinates[read.coordinate];
         numbers.push_back(read.is_rate ? coordinate_rate(q.coordinate, at.X, at.V) : q.at_stated);
-        reach.push_back(q.coordinate.is_angle() ? 0.1 : 0.1 * builder_.length());
+        const int body = q.coordinate.forms[0].body_j;
+        const bool is_state =
+            body != world && at_start.bodies()[static_cast<std::size_t>(body)].holds_states();
+        reach.push_back(is_state ? 0 : q.coordinate.is_angle() ? 0.1 : 0.1 * builder_.length());
     }
     for (std::size_t k = 0; k < states_.size(); ++k) {
         double size = std::abs(states_[k].start), by_reach = 0;
