@@ -18,7 +18,7 @@ ARRAY = re.compile(r"Floats|ndarray")
 UNIT = re.compile(r"\b(m|s|N|J|kg|rad|W)(/s(\^2)?| m| m/s| m\^2/s)?,|\(m,|quaternion|w, x, y, z|axes|relative|nan|"
                   r"orthonormal|violation|perturbation|lengths|views?\.", re.I)
 WITHOUT_EXAMPLE = {   # shown by that of another
-    "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Drive", "Event", "SolvedEvent", "Stop", "Entry", "Joint", "JointSeries", "Load",
+    "Body", "BodySeries", "BodyState", "Comparison", "Condition", "Controller", "Drive", "Event", "SolvedEvent", "Stop", "Entry", "Joint", "JointSeries", "Load",
     "Linearisation", "LoadSeries", "Method", "MethodOptions", "ModeBody", "ModeJoint", "ModelWarning", "Modes", "Names", "Parts", "Place", "PlacedBody", "PlacedJoint", "PlacedPoint", "Point", "RestBody", "RestJoint", "ReadingSeries",
     "ResultFileError", "Sensor", "SensorSeries", "Series", "Shape", "SlowWarning", "SolveWarning", "load_solution",
     "StateMatrices", "momenta", "state", *livens._generated.__all__}

@@ -9,16 +9,16 @@
 #include "livens/solvers/ranks.h"
 #include "livens/spacetime/solve.h"
 
-namespace livens::inline io_internal {
+namespace [[gnu::visibility("default")]] livens {
 
 /// The run of which this process has a part: solve_on_ranks() of the scenario. Everything but motion and
 /// series is that of the whole.
-[[gnu::visibility("default")]] Run part_of_run(const Scenario& scenario, Solution part);
+Run part_of_run(const Scenario& scenario, Solution part);
 
 /// Each rank writes its part of the motion into the same file, the first one all else, and puts it in place
 /// when all have. There are no samples at output times in it: `livens sample` and `livens export` make these.
 /// See write_run(); called by all ranks. All must see the folder.
-[[gnu::visibility("default")]] void write_parts(const std::filesystem::path& file, const Scenario& scenario,
-                                                const Run& part, Ranks& ranks, bool spares_others);
+void write_parts(const std::filesystem::path& file, const Scenario& scenario, const Run& part, Ranks& ranks,
+                 bool spares_others);
 
-}   // namespace livens::inline io_internal
+}   // namespace gnu::visibility("default")]]livens

@@ -10,7 +10,7 @@
 
 #include "livens/solvers/ranks.h"
 
-namespace livens::inline solvers_internal {
+namespace livens {
 
 namespace {
 
@@ -76,4 +76,4 @@ void run_as_ranks(int n, const std::function<void(Ranks&)>& work)
     if (failure) std::rethrow_exception(failure);
 }
 
-}   // namespace livens::inline solvers_internal
+}   // namespace livens

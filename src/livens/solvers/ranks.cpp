@@ -8,7 +8,7 @@
 #include "livens/solvers/sparse.h"
 #include "livens/solvers/staircase.h"
 
-namespace livens::inline solvers_internal {
+namespace livens {
 
 void Ranks::send(int to, std::span<const double> values)
 {
@@ -174,4 +174,4 @@ void GatheredChain::solve(std::span<const double> b, std::span<double> x)
     }
 }
 
-}   // namespace livens::inline solvers_internal
+}   // namespace livens

@@ -8,11 +8,10 @@
 #include <stdexcept>
 #include <vector>
 
-namespace livens::inline solvers_internal {
+namespace [[gnu::visibility("default")]] livens {
 
 /// Another rank is lost, or has failed: nobody can go on.
-struct [[gnu::visibility("default")]] RankLost : std::runtime_error
-{
+struct RankLost : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
@@ -43,8 +42,7 @@ public:
 
 /// Ranks as one of them sees them. All but send() and receive() is called by all ranks in the same order. A
 /// rank that is lost ends all others: RankLost.
-class [[gnu::visibility("default")]] Ranks
-{
+class Ranks {
 public:
     Ranks() = default;
     Ranks(const Ranks&) = delete;
@@ -113,13 +111,13 @@ private:
 
 /// Calls work(ranks) for each of n ranks, in threads of this process: for tests, and to count what many ranks
 /// would send. What one of them throws ends all, and is thrown on.
-[[gnu::visibility("default")]] void run_as_ranks(int n, const std::function<void(Ranks&)>& work);
+void run_as_ranks(int n, const std::function<void(Ranks&)>& work);
 
 /// Of the job that this process was started in by mpirun; null where the build has no PETSc. The first call
 /// begins MPI; the last rank to be destroyed ends it.
-[[gnu::visibility("default")]] std::unique_ptr<Ranks> make_mpi_ranks();
+std::unique_ptr<Ranks> make_mpi_ranks();
 /// Ends all processes of the job, if there is one that has begun, with this exit code.
-[[gnu::visibility("default")]] void abort_mpi(int exit_code);
-[[gnu::visibility("default")]] bool has_mpi();
+void abort_mpi(int exit_code);
+bool has_mpi();
 
-}   // namespace livens::inline solvers_internal
+}   // namespace gnu::visibility("default")]]livens

@@ -10,7 +10,7 @@
 #include <petscksp.h>
 #endif
 
-namespace livens::inline solvers_internal {
+namespace livens {
 
 #ifdef LIVENS_HAS_PETSC
 
@@ -201,4 +201,4 @@ bool has_mpi() { return false; }
 
 #endif
 
-}   // namespace livens::inline solvers_internal
+}   // namespace livens

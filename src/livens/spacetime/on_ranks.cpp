@@ -26,7 +26,7 @@
 #include "livens/spacetime/proposals.h"
 #include "livens/spacetime/solve_mesh.h"
 
-namespace livens::inline spacetime_internal {
+namespace livens {
 
 namespace {
 
@@ -356,4 +356,4 @@ Solution solve_on_ranks(const Model& model, const Problem& stated, const Time& t
     return solution;
 }
 
-}   // namespace livens::inline spacetime_internal
+}   // namespace livens

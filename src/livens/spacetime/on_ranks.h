@@ -5,7 +5,7 @@
 #include "livens/solvers/ranks.h"
 #include "livens/spacetime/solve.h"
 
-namespace livens::inline spacetime_internal {
+namespace [[gnu::visibility("default")]] livens {
 
 /// What one rank has done for a motion.
 struct RankWork {
@@ -19,16 +19,13 @@ struct RankWork {
 
 /// Throws InputError `ranks-method`, `ranks-conditions` or `ranks-elements` for what is not solved on ranks:
 /// the elements of the family mixed on Lagrange's basis are, all at once, from a state or between two halves.
-[[gnu::visibility("default")]] void check_ranks(const Model& model, const Problem& problem, const Time& time,
-                                                const Method& method, const SolveOptions& options,
-                                                int n_ranks);
+void check_ranks(const Model& model, const Problem& problem, const Time& time, const Method& method,
+                 const SolveOptions& options, int n_ranks);
 
 /// solve() by all ranks, each with its part of the elements; called by all of them with the same arguments.
 /// Returns this rank's part of the motion; report and verdict are those of the whole, but for the series,
 /// which go on from those of the ranks before. No second solution tells an error.
-[[gnu::visibility("default")]] Solution solve_on_ranks(const Model& model, const Problem& problem,
-                                                       const Time& time, const Method& method,
-                                                       const SolveOptions& options, Ranks& ranks,
-                                                       RankWork& work);
+Solution solve_on_ranks(const Model& model, const Problem& problem, const Time& time, const Method& method,
+                        const SolveOptions& options, Ranks& ranks, RankWork& work);
 
-}   // namespace livens::inline spacetime_internal
+}   // namespace gnu::visibility("default")]]livens

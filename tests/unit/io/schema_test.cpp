@@ -227,7 +227,8 @@ TEST(Schema, LONG_EveryValueOfAnotherTypeIsAnErrorAtTheValue)
                     return d.line == static_cast<int>(o.line) + 1 && d.column >= o.value_column() &&
                            (d.code == "wrong-type" || d.code == "unit" || d.code == "unknown-key" ||
                             d.code == "point-unknown" || d.code == "joint-unknown" ||
-                            d.code == "conditions-unknown" || d.code == "event-condition");
+                            d.code == "conditions-unknown" || d.code == "event-condition" ||
+                            d.code == "controller-name");
                 });
             EXPECT_TRUE(is_told) << o.with_value(wrong) << shown(result);
         }

@@ -69,6 +69,8 @@ void visit_head(Archive& archive, AnyRun& run)
     archive.choice("status", run.report.status, SolveStatus::suspect);
     archive.figures(run);
     archive.names("body", "names of the bodies", run.body_names);
+    archive.flags({"holds_states", {"body"}, "1", "none", "1: it stands for states of a controller"},
+                  run.body_holds_states);
     archive.names("joint", "names of the joints", run.joint_names);
     archive.names("note", "remarks on the run", run.notes);
     archive.names("number", "unknown numbers that were found", run.numbers.names);
@@ -104,8 +106,6 @@ void visit_model(Archive& archive, AnyRun& run)
     archive.text("meshes", "what the scenario's meshes come to", run.meshes);
     archive.flags({"is_point_mass", {"body"}, "1", "none", "1: the body is a point mass without orientation"},
                   run.body_is_point);
-    archive.flags({"holds_states", {"body"}, "1", "none", "1: it stands for states of a controller"},
-                  run.body_holds_states);
     archive.list({"body_center_of_mass", {"body", "xyz"}, "m", "body-fixed", "in body coordinates"},
                  run.centers_of_mass);
     archive.list({"block_newton_iterations", {"block"}, "1", "none", "Newton iterations of each block"},

@@ -13,7 +13,7 @@
 #include "livens/io/results/atomic_file.h"
 #include "livens/io/results/writing.h"
 
-namespace livens::inline io_internal {
+namespace livens {
 
 namespace {
 
@@ -135,4 +135,4 @@ void write_parts(const std::filesystem::path& file, const Scenario& scenario, co
     ranks.all(true);
 }
 
-}   // namespace livens::inline io_internal
+}   // namespace livens
