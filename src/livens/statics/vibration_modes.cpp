@@ -88,7 +88,7 @@ Roots general_roots(const Linearisation& linear)
     const int n_z = z.n(), size = 2 * n + n_z;
     DenseMatrix A(size, size);   // on (unit q, q', s z), whose entries are of one size
     const auto by_states =
-        n > 0 ? cholesky_solution(L, transpose({n_z, n, z.by_states.data()})) : DenseMatrix();
+        n > 0 && n_z > 0 ? cholesky_solution(L, transpose({n_z, n, z.by_states.data()})) : DenseMatrix();
     for (int k = 0; k < n_z; ++k) {
         for (int i = 0; i < n; ++i) {
             A(n + i, 2 * n + k) = -by_states(i, k);
