@@ -276,12 +276,27 @@ std::string name_of(const Method& method)
            std::string(word_of(mixed.start)) + ", " + std::string(word_of(mixed.multipliers)) + ")";
 }
 
+/// Conditions elsewhere say nothing of states, and would take them for places and velocities of bodies.
+static void refuse_states(const Model& model, const Conditions& conditions)
+{
+    const bool has_states = std::ranges::any_of(model.bodies(), &Body::holds_states);
+    const bool is_from_start = conditions.at_start == Known::state && conditions.at_end == Known::nothing &&
+                               !conditions.has_components();
+    if (!has_states || is_from_start) return;
+    throw InputError({"controller-ends", conditions.at_end == Known::nothing ? "start" : "end",
+                      "controllers need a motion from its start, whose whole state is given", "",
+                      "the state at the start",
+                      "conditions at the end and periodic motions say nothing of what controllers remember",
+                      "give the state at the start, or put formulas in the place of controllers"});
+}
+
 void check_method(const Model& model, const Problem& problem, const Time& time, const Method& method,
                   const SolveOptions& options)
 {
     if (model.n_bodies() == 0)
         throw InputError({"no-bodies", "body", "a model needs at least one body", "", "", "", "add a body"});
     refuse_rotors(model, problem.conditions, method);
+    refuse_states(model, problem.conditions);
     refuse_special_rows(model, method);
     check_unknowns(problem, options);
     check_events(model, problem, time, method, options);

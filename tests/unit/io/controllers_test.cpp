@@ -306,6 +306,25 @@ TEST(Controllers, AreRefusedByName)
         "input-unused");
 }
 
+/// What is given elsewhere would be taken for places of what holds states.
+TEST(Controllers, AreSolvedFromTheStart)
+{
+    const std::string controller = "states = { i = \"1 - i\" }\n";
+    for (const char* how : {"end = 1\nelements = 20\nperiodic = true\n",
+                            "end = 1\nelements = 20\n[end.known]\n\"pin.angle\" = 0.3\n"}) {
+        const ScenarioResult result = read(pendulum(controller, how, "pid.i"));
+        ASSERT_FALSE(result.diagnostics.empty()) << how;
+        EXPECT_EQ(result.diagnostics[0].code, "controller-ends") << how << shown(result);
+    }
+    const Scenario scenario = scenario_of(pendulum(controller, "end = 1", "pid.i"));
+    Problem problem{{scenario.model.start()}};
+    problem.conditions.at_start = Known::nothing;
+    problem.conditions.at_end = Known::state;
+    problem.conditions.end = scenario.model.start();
+    EXPECT_THROW(solve(scenario.model, problem, scenario.time, scenario.method, scenario.options),
+                 InputError);
+}
+
 TEST(Controllers, ThatAreSampledHaveNoRest)
 {
     const Scenario scenario = scenario_of(pendulum(

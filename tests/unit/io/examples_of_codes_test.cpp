@@ -90,6 +90,7 @@ const std::set<std::string_view> without{
     "basis-nodes",
     "browser",
     "browser-missing",
+    "controller-ends",
     "controller-sampled",
     "coordinate-twice",
     "coordinate-unknown",

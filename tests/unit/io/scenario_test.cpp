@@ -500,8 +500,8 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
     others.insert({"event-action", "event-condition", "event-method", "event-not-finite", "event-reaction",
                    "impact-simultaneous", "stop-limits", "stop-of", "stop-restitution", "stop-self",
                    "stop-violated"});   // decided_events_test.cpp, stops_test.cpp
-    others.insert({"controller-every", "controller-name", "controller-sampled", "controller-size",
-                   "controller-state", "controller-states"});   // controllers_test.cpp
+    others.insert({"controller-ends", "controller-every", "controller-name", "controller-sampled",
+                   "controller-size", "controller-state", "controller-states"});   // controllers_test.cpp
     others.insert(codes_of_others.begin(), codes_of_others.end());
     for (const Case& c : cases()) {
         EXPECT_NE(explain(c.code), "") << c.code;
