@@ -6,56 +6,32 @@
 
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/io/known_state.h"
-#include "livens/io/solve_scenario.h"
 #include "livens/multibody/controllers.h"
 #include "livens/spacetime/solve.h"
 #include "livens/statics/equilibrium.h"
-#include "unit/io/scenario_text.h"
+#include "unit/io/swinging_rod.h"
 
 namespace livens {
 
 namespace {
 
-using test::find;
 using test::read;
+using test::scenario_of;
 using test::shown;
-
-Scenario scenario_of(const std::string& text)
-{
-    ScenarioResult result = read(text);
-    EXPECT_TRUE(result.scenario.has_value() && result.diagnostics.empty()) << text << shown(result);
-    return result.scenario ? std::move(*result.scenario) : Scenario();
-}
 
 /// A pendulum of 2 kg, 0.16 + 0.02 kg m^2 x 2 about its pin, with what is said of its controller.
 std::string pendulum(const std::string& controller, const std::string& time, const std::string& torque)
 {
-    return R"(format = 1
-gravity = [0, 0, -9.81]
-
-[[body]]
-name = "arm"
-mass = 2
-inertia = [0.02, 0.02, 0.01]
-position = [0, 0, -0.4]
-
-[[joint]]
-name = "pin"
-type = "revolute"
-between = ["world", "arm"]
-at = [0, 0, 0]
-axis = [0, 1, 0]
-
-[[controller]]
+    return test::hanging_arm(R"([[controller]]
 name = "pid"
 )" + controller +
-           R"(
+                             R"(
 [[load]]
 name = "drive"
 type = "actuator"
 joint = "pin"
-expression = ")" +
-           torque + "\"\n\n[time]\n" + time + "\n";
+expression = ")" + torque + "\"\n\n[time]\n" +
+                             time + "\n");
 }
 
 /// PID with a filter, and a motor with its current: 60, 40, 8; 2 Ohm, 0.4 V s/rad.

@@ -34,6 +34,28 @@ inline std::vector<SolvedEvent> hits_of(const SolvedScenario& s)
     return hits;
 }
 
+/// An arm of 2 kg that hangs on a pin, its centre 0.4 m below: 0.34 kg m^2 about it. `more`: tables.
+inline std::string hanging_arm(const std::string& more)
+{
+    return R"(format = 1
+gravity = [0, 0, -9.81]
+
+[[body]]
+name = "arm"
+mass = 2
+inertia = [0.02, 0.02, 0.01]
+position = [0, 0, -0.4]
+
+[[joint]]
+name = "pin"
+type = "revolute"
+between = ["world", "arm"]
+at = [0, 0, 0]
+axis = [0, 1, 0]
+
+)" + more;
+}
+
 /// A rod of 1 m and 2 kg about its end, let go at an angle from where it hangs. `more`: tables, of which keys
 /// of the joint come first.
 struct SwingingRod {

@@ -10,6 +10,22 @@ namespace livens::inline io_internal {
 
 namespace {
 
+Key limit_law()
+{
+    return choice(
+        "limit_law", {"rigid", "penalty"},
+        "rigid: nothing passes the limits, which are stops of the names `JOINT.low` and `JOINT.high`; "
+        "penalty: springs act beyond them. Where limit_stiffness or limit_damping stands: penalty.");
+}
+
+Key limit_restitution()
+{
+    return Key{"limit_restitution", types::number,
+               "Of rigid limits: speed with which they are left, over that with which they were met.", "",
+               "0"}
+        .within({0, 1});
+}
+
 /// Loads along a coordinate, which the joint brings itself: what read_joint_loads() makes of them.
 std::vector<Key> keys_along_angle()
 {
@@ -29,12 +45,8 @@ std::vector<Key> keys_along_angle()
             "limit_stiffness d (1 + limit_damping d') pushes back, beyond by d; it never pulls.",
             "rad"}
             .or_infinite(),
-        choice("limit_law", {"rigid", "penalty"},
-               "rigid: nothing passes the limits, which are stops of the names `JOINT.low` and `JOINT.high`; "
-               "penalty: springs act beyond them. Where limit_stiffness or limit_damping stands: penalty."),
-        Key{"limit_restitution", types::number,
-            "Of rigid limits: speed with which they are left, over that with which they were met.", "", "0"}
-            .within({0, 1}),
+        limit_law(),
+        limit_restitution(),
         Key{"limit_stiffness", types::number,
             "Stiffness of the limits. Default: such that a contact, half a period of the inertia on the "
             "joint, lasts 0.03 T with T = sqrt(model length / gravity), or 0.3 s without gravity.",
@@ -62,12 +74,8 @@ std::vector<Key> keys_along_displacement()
             "a force limit_stiffness d (1 + limit_damping d') pushes back, beyond by d; it never pulls.",
             "m"}
             .or_infinite(),
-        choice("limit_law", {"rigid", "penalty"},
-               "rigid: nothing passes the limits, which are stops of the names `JOINT.low` and `JOINT.high`; "
-               "penalty: springs act beyond them. Where limit_stiffness or limit_damping stands: penalty."),
-        Key{"limit_restitution", types::number,
-            "Of rigid limits: speed with which they are left, over that with which they were met.", "", "0"}
-            .within({0, 1}),
+        limit_law(),
+        limit_restitution(),
         Key{"limit_stiffness", types::number,
             "Stiffness of the limits. Default: such that a contact, half a period of the mass on the "
             "joint, lasts 0.03 T with T = sqrt(model length / gravity), or 0.3 s without gravity.",
