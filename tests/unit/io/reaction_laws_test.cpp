@@ -81,7 +81,7 @@ axis = [0, 1, 0]
 name = "latch"
 type = "spherical"
 between = ["world", "arm"]
-at = [0, 0, -0.4]
+at = [0, 0, 0]
 from = 0.5
 )";
     EXPECT_EQ(code(pendulum("end = 1", "-0.3*pin.force", latch)), "event-method");
