@@ -190,7 +190,7 @@ class Equilibrium(_ByName):
 
     @property
     def state(self) -> Condition:
-        """All bodies at rest there: ``lv.solve(m, 5, start=rest.state)``."""
+        """All bodies at rest there, and states of controllers: ``lv.solve(m, 5, start=rest.state)``."""
         def keys(body: RestBody) -> dict[str, Any]:
             kept: dict[str, Any] = {"position": tuple(body.position.tolist()), "velocity": (0, 0, 0)}
             if not np.isnan(body.quaternion[0]):
@@ -198,7 +198,7 @@ class Equilibrium(_ByName):
             return kept
         turned = tuple({"joint": joint, "coordinate": word, "value": value}
                        for joint, word, value in self._found["turned"])
-        return Condition("state", {name: keys(body) for name, body in self.bodies.items()}, turned)
+        return Condition("state", {name: keys(body) for name, body in self.bodies.items()}, turned, self.states)
 
     def __repr__(self) -> str:
         rows = [f"\n  {name:<18}at {np.array2string(body.position, precision=6, suppress_small=True)} m"

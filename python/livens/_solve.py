@@ -251,6 +251,8 @@ def _overrides(model: Model, time: Time, of_time: dict[str, Any], method: Method
                 made["joint"] = [_without(joint, "rate") for joint in joints]
         if condition.bodies:
             made["body"] = _moved(model._root.get("body", []), condition, "start")
+        if condition.states:
+            made["controller"] = _holding(model._root.get("controller", []), condition.states)
     if isinstance(end, Mapping):
         made["end"] = _known(model, "end", end)
     elif end is not None:
@@ -370,6 +372,20 @@ def _moved(bodies: list[Table], condition: Condition, at: str) -> list[Table]:
             body.places[at] = into.place
         moved.append(body)
     return moved
+
+
+def _holding(controllers: list[Table], states: Mapping[str, float]) -> list[Table]:
+    """Controllers that start in these states."""
+    starting = []
+    for controller in controllers:
+        controller = Table(controller, controller.place, controller.places)
+        name = f"{controller['name']}."
+        own = {state[len(name):]: value for state, value in states.items()
+               if state.startswith(name) and state[len(name):] in controller.get("states", {})}
+        if own:
+            _set(controller, "controller", "start", {**controller.get("start", {}), **own})
+        starting.append(controller)
+    return starting
 
 
 @lru_cache(maxsize=1)

@@ -88,6 +88,8 @@ class Condition:
     coordinates: Sequence[Mapping[str, Any]] | None = None
     """Initial values and rates of joint coordinates, instead of those of the model: full turns of joints do not
     follow from the positions of bodies. None: those of the model are applied."""
+    states: Mapping[str, float] = field(default_factory=dict)
+    """Of controllers, by ``"controller.state"``. What is not there starts as the model has it."""
 
 
 def positions(bodies: Mapping[str, Mapping[str, Any]] | None = None) -> Condition:

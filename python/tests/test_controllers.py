@@ -37,6 +37,14 @@ def test_rest_has_states() -> None:
     assert rest.states["pid.i"] == pytest.approx(2*9.81*0.4*np.sin(0.5)/40, rel=1e-12)
 
 
+def test_a_motion_from_rest_stays_there() -> None:
+    m = arm(states={"i": "0.5 - q"}, outputs={"u": "60*(0.5 - q) + 40*i"}, start={"i": -0.3})
+    rest = m.find_equilibrium()
+    sol = lv.solve(m, 2, accuracy=1e-9, start=rest.state)
+    assert np.ptp(sol["pid"].i) < 1e-8 and np.ptp(sol["pin"].angle) < 1e-8
+    assert np.ptp(lv.solve(m, 2, accuracy=1e-9)["pid"].i) > 0.01   # as the model starts
+
+
 def test_sampled_values_are_held() -> None:
     m = arm(states={"n": "n + 1"}, outputs={"u": "0*q + n"}, every=0.1)
     sol = lv.solve(m, 1, accuracy=1e-6)

@@ -1998,8 +1998,7 @@ livens_mutant(NAME first_sample_missed
 
 # Reactions as if the loads that read them did nothing to them.
 livens_mutant(NAME reactions_without_friction
-              FILE dynamics/instant/reaction_mechanism.h
-              RECOMPILE dynamics/instant/reaction_laws.cpp
+              FILE dynamics/instant/reaction_mechanism.cpp
               OLD [[all[j].force += factors[k] * by_unit[k][j].force;]]
               NEW [[all[j].force += 0.0 * factors[k] * by_unit[k][j].force;]]
               TESTS_OF unit_io
@@ -2012,3 +2011,44 @@ livens_mutant(NAME states_blind_to_positions
               NEW [[A(2 * n + k, i) = -0.0 * z.by_q[]]
               TESTS_OF unit_io
               MUST_FAIL Controllers.AreAtRestWithTheirBodies)
+
+# Reactions that a part reads along the axes of the whole: right where it is not turned.
+livens_mutant(NAME reactions_not_turned
+              FILE multibody/relocation.cpp
+              OLD [[reaction.along = to.by.rotation * reaction.along;]]
+              NEW [[]]
+              TESTS_OF unit_io
+              MUST_FAIL Include.LoadsReadReactionsOfTheirParts
+                        ReactionLaws.MoveWithTheirModels)
+
+# Laws that read the joint of the same number in a phase without some joints.
+livens_mutant(NAME reactions_by_number
+              FILE multibody/acting_model.cpp
+              OLD [[one.joint = at == acting.joints.end() ? -1 : static_cast<int>(at - acting.joints.begin());]]
+              NEW [[one.joint = std::min(one.joint, static_cast<int>(acting.joints.size()) - 1);]]
+              TESTS_OF unit_io
+              MUST_FAIL ReactionLaws.ReadStops)
+
+# An impact that does not go on through bodies that touch without a force.
+livens_mutant(NAME impact_stays_at_its_pair
+              FILE spacetime/phases/phase_chain.cpp
+              OLD [[events.insert(events.end(), beside.begin(), beside.end());]]
+              NEW [[]]
+              TESTS_OF unit_io
+              MUST_FAIL Stops.AreMetThroughBodiesThatTouch)
+
+# Speeds of impacts by the row of a distance, which is of its square.
+livens_mutant(NAME speed_of_squares
+              FILE spacetime/phases/contacts.cpp
+              OLD [[return norm(line);]]
+              NEW [[return 1;]]
+              TESTS_OF unit_io
+              MUST_FAIL Stops.AreMetThroughBodiesThatTouch)
+
+# The first stop that would have to pull keeps its impulse.
+livens_mutant(NAME stop_that_pulls
+              FILE dynamics/instant/impact.cpp
+              OLD [[if ((*back)[k] > 0 && impulses_[pushing_[k]] < step * (*back)[k]) {]]
+              NEW [[if (false && impulses_[pushing_[k]] < step * (*back)[k]) {]]
+              TESTS_OF unit_dynamics
+              MUST_FAIL Impact.FulfilsItsLawForAnyMassesAndSpeeds)

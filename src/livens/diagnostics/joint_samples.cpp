@@ -15,6 +15,7 @@
 #include "livens/dynamics/rows/rank.h"
 #include "livens/dynamics/rows/row_tables.h"
 #include "livens/dynamics/rows/rows.h"
+#include "livens/multibody/acting_models.h"
 
 namespace livens {
 
@@ -104,10 +105,11 @@ std::vector<int> kept_rows(const Model& model, const Motion& motion)
 }
 
 /// The same of the joints alone that act around `beside`; others do nothing.
-std::vector<JointSample> reactions_beside(const Model& model, const Motion& motion, const State& state,
+std::vector<JointSample> reactions_beside(ActingModels& models, const Motion& motion, const State& state,
                                           std::span<const double> multipliers, double beside)
 {
-    const ActingModel acting = acting_at(model, beside);
+    const std::shared_ptr<const ActingModel> known = models.at(beside);
+    const ActingModel& acting = *known;
     std::vector<double> lambda;
     for (const int row : acting.rows) lambda.push_back(multipliers[row]);
     std::vector<int> independent = all_rows(acting.model);
@@ -116,18 +118,19 @@ std::vector<JointSample> reactions_beside(const Model& model, const Motion& moti
     const std::vector<JointSample> found = reactions_of(acting.model, state, lambda, lambda, independent);
     JointSample nothing;
     nothing.is_unique = nothing.is_bounded = true;
-    std::vector<JointSample> samples(model.joints().size(), nothing);
+    std::vector<JointSample> samples(models.whole().joints().size(), nothing);
     for (std::size_t i = 0; i < found.size(); ++i) samples[acting.joints[i]] = found[i];
     return samples;
 }
 
 /// Marks joints without a reaction inside an element: where rows lose rank that are independent at its start,
 /// those that take part, without which fewer are lost.
-void forget_unbounded(const Model& model, const Motion& motion, const State& state,
+void forget_unbounded(ActingModels& models, const Motion& motion, const State& state,
                       std::vector<JointSample>& samples)
 {
     constexpr double lost = 1e-4;   // docs/theory.md, "Singular positions"
-    const ActingModel acting = acting_at(model, state.t);
+    const std::shared_ptr<const ActingModel> known = models.at(state.t);
+    const ActingModel& acting = *known;
     const State start = motion.at_end(motion.mesh.element_at(state.t));
     const std::vector<int> rows =
         row_rank(frozen(acting.model, {start.t}), start.X, all_rows(acting.model)).independent;
@@ -166,18 +169,19 @@ struct Held {
 
 /// reactions(state, left, right) where all joints act.
 template <class Reactions>
-std::vector<JointSample> joints_in(const Model& model, const Motion& motion, const Held& held,
+std::vector<JointSample> joints_in(ActingModels& models, const Motion& motion, const Held& held,
                                    const Reactions& reactions)
 {
     const State& state = held.state;
     const int end = element_end_at(motion.mesh, state.t);
     std::vector<JointSample> samples;
-    if (!model.has_events())
+    if (!models.whole().has_events())
         samples = reactions(state, held.left, held.right);
     else {
-        samples = reactions_beside(model, motion, state, held.left, beside(motion, state.t, end, Side::left));
+        samples =
+            reactions_beside(models, motion, state, held.left, beside(motion, state.t, end, Side::left));
         const std::vector<JointSample> after =
-            reactions_beside(model, motion, state, held.right, beside(motion, state.t, end, Side::right));
+            reactions_beside(models, motion, state, held.right, beside(motion, state.t, end, Side::right));
         for (std::size_t j = 0; j < samples.size(); ++j) {
             samples[j].right = after[j].right;
             samples[j].is_unique = samples[j].is_unique && after[j].is_unique;
@@ -185,7 +189,7 @@ std::vector<JointSample> joints_in(const Model& model, const Motion& motion, con
             samples[j].is_bounded = samples[j].is_bounded && after[j].is_bounded;
         }
     }
-    if (!held.is_acceleration_level && end < 0) forget_unbounded(model, motion, state, samples);
+    if (!held.is_acceleration_level && end < 0) forget_unbounded(models, motion, state, samples);
     for (JointSample& sample : samples) sample.is_acceleration_level = held.is_acceleration_level;
     return samples;
 }
@@ -199,7 +203,7 @@ std::vector<JointSample> sample_joints(const Model& model, const Motion& motion,
 
 struct JointSampler::Parts {
     Parts(const Model& model, const Motion& motion)
-        : rows(model, false), independent(kept_rows(model, motion))
+        : rows(model, false), independent(kept_rows(model, motion)), acting(model)
     {}
 
     [[gnu::visibility("hidden")]] std::optional<Held> held_in(const Model& model, const Motion& motion,
@@ -209,6 +213,7 @@ struct JointSampler::Parts {
 
     RowTables rows;
     std::vector<int> independent;
+    ActingModels acting;
     UniqueReactions least;   // at an element end
     int least_end = -1;
     std::optional<Accelerations> accelerations;   // once an instant between ends is asked for
@@ -287,7 +292,7 @@ std::vector<JointSample> JointSampler::at(const State& given) const
             return parts_->reaction(model_, j, state.X, multipliers);
         });
     };
-    return joints_in(model_, motion_, *held, reactions);
+    return joints_in(parts_->acting, motion_, *held, reactions);
 }
 
 const UniqueReactions* JointSampler::least_at(const State& state, int end) const

@@ -18,6 +18,7 @@
 #include "livens/dynamics/instant/reactions.h"
 #include "livens/dynamics/rows/row_tables.h"
 #include "livens/dynamics/rows/rows.h"
+#include "livens/multibody/acting_models.h"
 #include "livens/multibody/rotors.h"
 #include "livens/multibody/unwrapped_angles.h"
 #include "livens/statics/small_motions.h"
@@ -242,7 +243,7 @@ std::vector<RigiditySample> of_both_sides(const SideOfRigidity& left, const Side
 
 Rigidity::Rigidity(const Model& model, const Motion& motion)
     : model_(model), motion_(motion), turns_(model, motion), independent_(all_rows(model)),
-      rows_(std::make_shared<const RowTables>(model, false))
+      rows_(std::make_shared<const RowTables>(model, false)), acting_(std::make_shared<ActingModels>(model))
 {
     std::erase_if(independent_, [&](int row) {
         return std::ranges::find(motion.redundant_rows, row) != motion.redundant_rows.end();
@@ -267,9 +268,10 @@ std::vector<RigiditySample> Rigidity::at(const State& given) const
     if (!model_.has_events())
         return of_both_sides(rigidity_on(model_, state, Side::left), rigidity_on(model_, state, Side::right));
     // On the left act the joints of the instant just before, on the right those of the instant itself.
-    const Model before = acting_at(model_, std::nextafter(state.t, -infinity)).model,
-                after = acting_at(model_, state.t).model;
-    return of_both_sides(rigidity_on(before, state, Side::left), rigidity_on(after, state, Side::right));
+    const std::shared_ptr<const ActingModel> before = acting_->at(std::nextafter(state.t, -infinity)),
+                                             after = acting_->at(state.t);
+    return of_both_sides(rigidity_on(before->model, state, Side::left),
+                         rigidity_on(after->model, state, Side::right));
 }
 
 std::vector<RigiditySample> Rigidity::at_end(const State& state, int end, const JointSampler* joints) const

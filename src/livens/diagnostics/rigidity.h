@@ -13,6 +13,9 @@ namespace [[gnu::visibility("default")]] livens {
 inline namespace dynamics_internal {
 class RowTables;
 }   // namespace dynamics_internal
+inline namespace multibody_internal {
+class ActingModels;
+}   // namespace multibody_internal
 
 /// What keeps a body rigid at an instant, from both sides of it: the multipliers Lambda_ab of (P4), N m, in
 /// components along the body's directors as they are stated; tension is positive. They are the second
@@ -47,6 +50,7 @@ private:
     LoadTurns turns_;
     std::vector<int> independent_;   ///< rows
     std::shared_ptr<const RowTables> rows_;
+    std::shared_ptr<ActingModels> acting_;
 };
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

@@ -12,6 +12,7 @@
 #include "livens/base/text.h"
 #include "livens/diagnostics/extremes.h"
 #include "livens/dynamics/start/prepared.h"
+#include "livens/multibody/controllers.h"
 #include "livens/solvers/patience.h"
 
 namespace livens {
@@ -156,6 +157,26 @@ void tell_limits(const Scenario& scenario, Run& run)
     }
 }
 
+/// States that are of another size than the one that their errors are relative to.
+void tell_sizes(const Model& model, Run& run)
+{
+    constexpr double far = 1e3;
+    std::vector<NamedState> most;
+    for (int e = 0; e <= run.motion.n_elements() && run.motion.n_elements() > 0; ++e) {
+        const std::vector<NamedState> now = states_in(model, run.motion.at_end(e).V);
+        if (most.empty()) most = now;
+        for (std::size_t k = 0; k < now.size(); ++k)
+            most[k].value = std::max(std::abs(most[k].value), std::abs(now[k].value));
+    }
+    for (const NamedState& state : most) {
+        const double share = state.value / state.size;
+        if (share == 0 || (share > 1 / far && share < far)) continue;
+        run.notes.push_back("state '" + state.name + "' is " + to_text(state.value, 2) +
+                            " at most, and its errors are relative to its size, " + to_text(state.size, 2) +
+                            ": state the 'size' of it in its controller");
+    }
+}
+
 RunEvents events_of(const Model& model, const std::vector<SolvedEvent>& events)
 {
     RunEvents all;
@@ -219,6 +240,7 @@ Run judged_run(const Scenario& given, SolvedScenario&& solved, const std::functi
     }
     try {
         tell_limits(scenario, run);
+        tell_sizes(scenario.model, run);
     } catch (const Stopped&) {   // as the motion stays unjudged then
     }
     return run;

@@ -3,8 +3,10 @@
 // move.
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
-#include "livens/multibody/model.h"
+#include "livens/multibody/acting_models.h"
 
 namespace livens {
 
@@ -72,11 +74,16 @@ Model as_decided(const Model& model, const DecidedTimes& times)
     for (std::size_t l = 0; l < now.loads_.size(); ++l) {
         Load& load = now.loads_[l];
         if (!load.is_decided_by_events()) continue;
+        if (load.by_reactions != nullptr) {   // whose laws know their times
+            decide(load, times.loads, l);
+            continue;
+        }
         load = Load(*load.whenever);
         decide(load, times.loads, l);
         load = for_its_time(load);
     }
     now.changed();
+    bind_reaction_laws(now);
     return now;
 }
 
@@ -95,11 +102,32 @@ ActingModel acting_at(const Model& model, double t)
     }
     for (Load load : model.loads()) {
         static_cast<ActingTimes&>(load) = {};
+        if (load.by_reactions != nullptr) {
+            ReactionLaw law = *load.by_reactions;
+            for (ReactionInput& one : law.reactions) {
+                const auto at = std::ranges::find(acting.joints, one.joint);
+                one.joint = at == acting.joints.end() ? -1 : static_cast<int>(at - acting.joints.begin());
+            }
+            load.by_reactions = std::make_shared<const ReactionLaw>(std::move(law));
+        }
         acting.model.add_load(std::move(load));
     }
     for (const Sensor& sensor : model.sensors()) acting.model.add_sensor(sensor);
     for (const NamedPoint& point : model.points()) acting.model.add_point(point);
+    bind_reaction_laws(acting.model);
     return acting;
+}
+
+std::shared_ptr<const ActingModel> ActingModels::at(double t)
+{
+    std::vector<int> joints;
+    for (int j = 0; j < static_cast<int>(model_.joints().size()); ++j)
+        if (model_.joints()[j].acts_at(t)) joints.push_back(j);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const std::shared_ptr<const ActingModel>& one : known_)
+        if (one->joints == joints) return one;
+    known_.push_back(std::make_shared<const ActingModel>(acting_at(model_, t)));
+    return known_.back();
 }
 
 }   // namespace livens

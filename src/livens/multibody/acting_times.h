@@ -14,6 +14,8 @@ struct TimeSpan {
     double until = std::numeric_limits<double>::infinity();
 
     bool has(double t) const { return from <= t && t < until; }
+    /// Just before t.
+    bool has_before(double t) const { return from < t && t <= until; }
 };
 
 /// When something acts: instants are events of the motion.
@@ -38,6 +40,13 @@ struct ActingTimes : TimeSpan {
         if (!is_from_motion) return !is_begun_by_event && has(t);
         for (const TimeSpan& one : decided)
             if (one.has(t)) return true;
+        return false;
+    }
+    bool acts_before(double t) const
+    {
+        if (!is_from_motion) return !is_begun_by_event && has_before(t);
+        for (const TimeSpan& one : decided)
+            if (one.has_before(t)) return true;
         return false;
     }
     /// Also at the ends of its time.

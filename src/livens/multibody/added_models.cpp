@@ -52,15 +52,18 @@ AddedParts Model::add(const Model& other, const std::string& prefix, const Displ
     Model all = *this;   // what fails half-way leaves this one as it was; `other` may be this one
     const AddedParts first{n_bodies(), static_cast<int>(joints_.size()), static_cast<int>(loads_.size()),
                            static_cast<int>(sensors_.size()), static_cast<int>(points_.size())};
-    const Relocation to{prefix, {by.position, project_directors(by.rotation)}, first.body, first.load};
+    const Relocation to{
+        prefix, {by.position, project_directors(by.rotation)}, first.body, first.load, [&](int j) {
+            return j + first.joint;
+        }};
     for (const Body& body : other.bodies_) all.add_body(relocated(body, to));
     for (const NamedPoint& point : other.points_) all.add_point(relocated(point, to));
     for (const Joint& joint : other.joints_) all.add_joint(relocated(joint, to));
     for (const Load& load : other.loads_) all.add_load(relocated(load, to));
     for (const Sensor& sensor : other.sensors_) all.add_sensor(relocated(sensor, to));
-    for (const Event& event : other.events_)
-        all.add_event(relocated(event, to, [&](int j) { return j + first.joint; }));
+    for (const Event& event : other.events_) all.add_event(relocated(event, to));
     for (const Sampling& sampling : other.samplings_) all.add_sampling(relocated(sampling, to));
+    bind_reaction_laws(all);
     *this = std::move(all);
     return first;
 }

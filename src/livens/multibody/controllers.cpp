@@ -98,8 +98,9 @@ Load observer(const std::string& name, const std::vector<LawCoordinate>& coordin
     const auto all = std::make_shared<const Observed>(std::move(observed));
     for (const LawReading& reading : readings)
         load.readings.push_back(
-            {reading.name, reading.unit, [all, value = reading.value](const LoadArguments& arguments) {
-                 return all->read(value, arguments);
+            {reading.name, reading.unit,
+             [all, value = std::make_shared<const LawEnergy>(reading.value)](const LoadArguments& arguments) {
+                 return all->read(*value, arguments);
              }});
     load.forces = [](const LoadArguments&, LoadForces&) {};
     load.forces.record = [](LoadTape&, const TapeNumber&) {};

@@ -135,7 +135,7 @@ struct Gate {
     bool is_open(Instant at) const
     {
         return std::ranges::any_of(spans, [&](const TimeSpan& one) {
-            return at.side == Side::left ? one.from < at.t && at.t <= one.until : one.has(at.t);
+            return at.side == Side::left ? one.has_before(at.t) : one.has(at.t);
         });
     }
     TimeFunction as_function(const std::vector<double>& breaks) const

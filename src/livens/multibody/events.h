@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "livens/multibody/loads/load_laws.h"
+#include "livens/multibody/loads/reaction_law.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -21,15 +21,6 @@ struct EventAction {
         set           ///< states become others
     } does = Does::note;
     int joint = -1, load = -1;   ///< of `begin` and `end`: one of them
-};
-
-/// A number of what a joint exerts on its second body, as joint_reaction() has it; nothing where the joint
-/// does not act.
-struct ReactionInput {
-    int joint = 0;
-    bool is_torque = false;
-    int component = -1;           ///< x, y or z in world axes; -1: the length
-    bool is_multiplier = false;   ///< that of its first row instead
 };
 
 /// Numbers that are positive where what they stand for is true.

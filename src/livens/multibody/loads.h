@@ -169,10 +169,11 @@ struct LoadLine {
 };
 
 struct Load;
-
-/// When it acts: instants that are stated stand among its breaks.
+struct ReactionLaw;
+/// When it acts: instants that are stated stand among its breaks. And what it was made of.
 struct LoadTimes : ActingTimes {
-    std::shared_ptr<const Load> whenever{};   ///< of what for_its_time() has made: the load that acts always
+    std::shared_ptr<const Load> whenever{};              ///< by for_its_time(): the load that acts always
+    std::shared_ptr<const ReactionLaw> by_reactions{};   ///< by bind_reaction_laws()
 };
 
 /// A load is data and functions; a new one is a new maker.
@@ -192,7 +193,7 @@ struct Load : LoadSmoothness, LoadEnergy, LoadLine, LoadTimes {
     std::string domain;   ///< where F is a number, for the message if it is not; empty: everywhere
     /// Angles that F counts with their turns, zero where the bodies are stated; see LoadArguments::angles.
     std::vector<JointCoordinate> angles{};
-    /// Components of rotation vectors that F acts along or is of: a motion beyond their range is suspect.
+    /// Rotation vectors' components that F acts along or is of: a motion beyond their range is suspect.
     std::vector<JointCoordinate> rotations{};
 
     LoadFunction forces;   ///< F; required
@@ -205,8 +206,7 @@ struct Load : LoadSmoothness, LoadEnergy, LoadLine, LoadTimes {
     std::vector<LoadReading> readings;
 };
 
-enum class Frame { inertial, body_fixed };
-/// In scenarios, in this order.
+enum class Frame { inertial, body_fixed };   // in scenarios, in this order:
 constexpr std::array<std::string_view, 2> words_of(Frame) { return {"world", "body"}; }
 
 /// Three functions of time, the components of a load.

@@ -306,11 +306,11 @@ int Model::add_load(Load load)
     for (std::size_t b = 0; b < load.n_acted; ++b)
         if (load.needs_directors[b] && load.bodies[b] != world && bodies_[load.bodies[b]].is_point)
             refuse("load-needs-directors", path,
-                   "the load needs the orientation of '" + bodies_[load.bodies[b]].name + "', a point mass",
+                   "the load needs the orientation of '" + body_name(load.bodies[b]) + "', a point mass",
                    "a point mass takes forces in world axes at its own point");
     has_.pieces = has_.pieces || !load.guards.empty() || load.bends_at_centre;
     has_.events = has_.events || load.is_decided_by_events();
-    if (load.is_decided_by_events() && load.whenever == nullptr) load = for_its_time(load);
+    if (load.is_decided_by_events() && !load.whenever && !load.by_reactions) load = for_its_time(load);
     loads_.push_back(std::move(load));
     changed();
     return static_cast<int>(loads_.size()) - 1;

@@ -169,6 +169,7 @@ private:
     void changed();
     friend Model frozen(const Model& model, Instant at);
     friend Model as_decided(const Model& model, const DecidedTimes& times);
+    friend void bind_reaction_laws(Model& model);
 };
 
 /// The model with all rows as they are at an instant, without drives: for what is asked of positions alone.

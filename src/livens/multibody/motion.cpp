@@ -208,4 +208,10 @@ Reaction joint_reaction(const Joint& joint, const Matrix34& X_second, const Matr
     return reaction;
 }
 
+double number_of(const Reaction& reaction, const ReactionInput& input)
+{
+    const Vector3& v = input.is_torque ? reaction.torque : reaction.force;
+    return input.along == Vector3{} ? norm(v) : dot(input.along, v);
+}
+
 }   // namespace livens

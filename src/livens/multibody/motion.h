@@ -126,5 +126,7 @@ Reaction joint_reaction(const Model& model, int joint, std::span<const Matrix34>
                         std::span<const double> multipliers);
 /// The same from what the joint does to X of its second body: F of -G^T lambda.
 Reaction joint_reaction(const Joint& joint, const Matrix34& X_second, const Matrix34& F);
+/// What an input reads of it.
+double number_of(const Reaction& reaction, const ReactionInput& input);
 
 }   // namespace gnu::visibility("default")]]livens

@@ -4,9 +4,9 @@
 // arguments are moved back, the forces forth.
 #include "livens/multibody/relocation.h"
 
+#include <memory>
 #include <utility>
 
-#include "livens/base/error.h"
 #include "livens/multibody/loads/load_tape.h"
 
 namespace livens {
@@ -225,9 +225,31 @@ Joint relocated(Joint joint, const Relocation& to)
     return joint;
 }
 
+ReactionInput relocated(ReactionInput reaction, const Relocation& to)
+{
+    if (reaction.joint >= 0) reaction.joint = to.joint(reaction.joint);
+    reaction.along = to.by.rotation * reaction.along;
+    return reaction;
+}
+
+namespace {
+
+ReactionLaw relocated(ReactionLaw law, const Relocation& to)
+{
+    law.name = to.name(law.name);
+    for (Load& unit : law.units) unit = livens::relocated(unit, to);
+    for (LawCoordinate& q : law.coordinates) relocate(q.coordinate, to);
+    for (ReactionInput& one : law.reactions) one = livens::relocated(one, to);
+    return law;
+}
+
+}   // namespace
+
 Load relocated(Load load, const Relocation& to)
 {
     load.name = to.name(load.name);
+    if (load.by_reactions != nullptr)
+        load.by_reactions = std::make_shared<const ReactionLaw>(relocated(*load.by_reactions, to));
     if (!to.by.is_none()) displace(load, to.by);
     for (int& body : load.bodies) body = to.body(body);
     relocate(load.over, to);
@@ -246,18 +268,12 @@ Sensor relocated(Sensor sensor, const Relocation& to)
     return sensor;
 }
 
-Event relocated(Event event, const Relocation& to, const std::function<int(int)>& joint)
+Event relocated(Event event, const Relocation& to)
 {
     event.name = to.name(event.name);
     for (LawCoordinate& q : event.terms.coordinates) relocate(q.coordinate, to);
-    for (ReactionInput& one : event.terms.reactions) {
-        if (one.component >= 0 && to.by.rotation != identity<3>())
-            throw InputError({"event-reaction", "event[" + event.name + "]",
-                              "a component of a reaction in world axes, in a part that is turned", "", "", "",
-                              "use the length of the force or torque, or state the event outside"});
-        one.joint = joint(one.joint);
-    }
-    if (event.action.joint >= 0) event.action.joint = joint(event.action.joint);
+    for (ReactionInput& one : event.terms.reactions) one = relocated(one, to);
+    if (event.action.joint >= 0) event.action.joint = to.joint(event.action.joint);
     if (event.action.load >= 0) event.action.load += to.first_load;
     relocate(event.change, to);
     return event;

@@ -18,6 +18,7 @@ struct Relocation {
     std::string prefix;
     Displacement by{};
     int first_body = 0, first_load = 0;
+    std::function<int(int)> joint = nullptr;   ///< where a joint of the part is in the model
     /// Where bodies of the part that came later than others of the model are: its number n_early and on.
     int n_early = std::numeric_limits<int>::max(), first_late = 0;
 
@@ -35,10 +36,9 @@ NamedPoint relocated(NamedPoint point, const Relocation& to);
 Joint relocated(Joint joint, const Relocation& to);
 Load relocated(Load load, const Relocation& to);
 Sensor relocated(Sensor sensor, const Relocation& to);
-/// `joint`: where a joint of the part is in the model. Throws InputError `event-reaction` for components of
-/// reactions where axes turn.
-Event relocated(Event event, const Relocation& to, const std::function<int(int)>& joint);
+Event relocated(Event event, const Relocation& to);
 Sampling relocated(Sampling sampling, const Relocation& to);
 JointCoordinate relocated(JointCoordinate coordinate, const Relocation& to);
+ReactionInput relocated(ReactionInput reaction, const Relocation& to);
 
 }   // namespace gnu::visibility("default")]]livens

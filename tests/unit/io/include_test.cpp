@@ -6,8 +6,10 @@
 #include <fstream>
 
 #include "livens/io/scenario.h"
+#include "livens/multibody/controllers.h"
 #include "unit/io/model_numbers.h"
 #include "unit/io/scenario_text.h"
+#include "unit/io/swinging_rod.h"
 
 namespace livens {
 namespace {
@@ -185,6 +187,43 @@ TEST(Include, NamesArePrefixedAndFoundFromOutside)
     EXPECT_NEAR(m.bodies()[0].V(0, 0), -m.bodies()[2].V(0, 0), 1e-15);
     EXPECT_NE(m.bodies()[0].V(0, 0), 0);
     EXPECT_EQ(r.scenario->mesh_files.size(), 1u);
+}
+
+/// Friction of bearings by reactions, in parts of which one is turned: each is that of one pendulum alone
+/// (ReactionLaws.RubAsTheirEquationsSay), also by components along axes of the part.
+TEST(Include, LoadsReadReactionsOfTheirParts)
+{
+    const Folder folder;
+    folder.write("arm.toml", test::hanging_arm(R"toml([[load]]
+name = "bearing"
+type = "actuator"
+joint = "pin"
+expression = "-0.3*0.05*sqrt(pin.force_x^2 + pin.force_z^2)*tanh(pin.angle_rate/0.1)"
+[[controller]]
+name = "scale"
+states = { f = "(pin.force_x - f)/0.05" }
+)toml"));
+    const ScenarioResult r = folder.read(R"(format = 1
+gravity = [0, 0, -9.81]
+include = [{ file = "arm.toml", prefix = "a " },
+           { file = "arm.toml", prefix = "b ", position = [0, 3, 0], rotation_vector = [0, 0, "90 deg"] }]
+[start]
+coordinates = [{ joint = "a pin", value = 1.2 }, { joint = "b pin", value = 1.2 }]
+[time]
+end = 2
+accuracy = 1e-9
+)");
+    ASSERT_TRUE(r.scenario) << shown(r);
+    const SolvedScenario s = solve_scenario(*r.scenario, r.scenario->options, r.scenario->prepared);
+    ASSERT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+    const State last = s.solution.motion.at_end(s.solution.motion.n_elements());
+    for (const std::size_t k : {0, 1}) {
+        const Joint& pin = r.scenario->model.joints()[k];
+        EXPECT_NEAR(coordinate_value(pin.coordinates[0].coordinate, last.X), -0.74441363005759, 1e-8) << k;
+    }
+    const std::vector<NamedState> states = states_in(r.scenario->model, last.V);
+    EXPECT_GT(std::abs(states[0].value), 0.1);
+    EXPECT_NEAR(states[0].value, states[1].value, 1e-7);
 }
 
 TEST(Include, PartsBeginWhereTheStartHasLedThem)

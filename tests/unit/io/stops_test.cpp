@@ -382,6 +382,39 @@ TEST(Stops, HitAtOnceNeedALawWhereTheyFeelEachOther)
     EXPECT_NEAR(motion.at_end(motion.impacts.ends[0]).V[0](2, 0), 0.5 * std::sqrt(9.81), 1e-10);
 }
 
+/// Two balls that touch, hit by a third: by Moreau's law all three share what the restitution leaves. Without
+/// that law the impact of balls that were at rest is one of several, too.
+TEST(Stops, AreMetThroughBodiesThatTouch)
+{
+    const auto row = [](const std::string& law) {
+        std::string text = "format = 1\n";
+        for (const char* ball : {"0 -0.5", "1 0", "2 0.25"}) {
+            const std::string k(1, ball[0]), x = ball + 2;
+            text += "[[body]]\nname = \"b" + k + "\"\nshape = { sphere = 0.1 }\nmass = 1\nposition = [" + x +
+                    ", 0, 0]\n[[joint]]\nname = \"g" + k +
+                    "\"\ntype = \"prismatic\"\nbetween = [\"world\", \"b" + k + "\"]\nat = [" + x +
+                    ", 0, 0]\naxis = [1, 0, 0]\n";
+        }
+        for (const char* pair : {"0 1", "1 2"})
+            text += std::string("[[stop]]\nname = \"s") + pair[0] + "\"\nbetween = [\"b" + pair[0] +
+                    "\", \"b" + pair[2] + "\"]\nlimits = [0.25, inf]\nrestitution = 1\n" + law;
+        return solved(text + "[start]\ncoordinates = [{ joint = \"g0\", rate = 1 }]\n[time]\nend = 0.5\n"
+                             "accuracy = 1e-10\n");
+    };
+    const SolvedScenario s = row("impact = \"together\"\n");
+    ASSERT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+    const State end = s.solution.motion.at_end(s.solution.motion.n_elements());
+    EXPECT_NEAR(end.V[0](0, 0), -1 / 3.0, 1e-12);
+    for (const std::size_t k : {1, 2}) EXPECT_NEAR(end.V[k](0, 0), 2 / 3.0, 1e-12);
+    ASSERT_FALSE(hits_of(s).empty());
+    EXPECT_NEAR(hits_of(s)[0].speed, 1, 1e-12);   // of the distance, not of its square
+    EXPECT_NEAR(hits_of(s)[0].impulse, 4 / 3.0, 1e-12);
+    const SolvedScenario alone = row("");
+    EXPECT_FALSE(alone.solution.report.converged());
+    EXPECT_NE(alone.solution.report.message.find("same instant"), std::string::npos)
+        << alone.solution.report.message;
+}
+
 TEST(Stops, AreRefusedByName)
 {
     const auto refused = [](const std::string& text, const char* code) {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/unwrapped_angles.h"
@@ -92,39 +92,102 @@ std::optional<std::vector<double>> solved(std::vector<std::vector<double>> D, st
     return b;
 }
 
-/// Impulses >= 0 with speeds + D impulses >= least, and one of both zero for each; none: there are none.
-std::optional<std::vector<double>> complementary(const std::vector<std::vector<double>>& D,
-                                                 const std::vector<double>& speeds,
-                                                 const std::vector<double>& least)
-{
-    const std::size_t n = speeds.size();
-    double size = 0;
-    for (std::size_t i = 0; i < n; ++i) size = std::max({size, std::abs(speeds[i]), std::abs(least[i])});
-    const double tolerance = 1e-13 * size;
-    for (std::uint32_t set = 0; set < (1u << n); ++set) {
-        std::vector<std::size_t> active;
-        for (std::size_t i = 0; i < n; ++i)
-            if ((set >> i & 1u) != 0) active.push_back(i);
-        std::vector<std::vector<double>> part(active.size(), std::vector<double>(active.size()));
-        std::vector<double> wanted(active.size());
-        for (std::size_t i = 0; i < active.size(); ++i) {
-            wanted[i] = least[active[i]] - speeds[active[i]];
-            for (std::size_t j = 0; j < active.size(); ++j) part[i][j] = D[active[i]][active[j]];
-        }
-        const std::optional<std::vector<double>> found = solved(std::move(part), std::move(wanted));
-        if (!found) continue;
-        std::vector<double> impulses(n, 0.0);
-        for (std::size_t i = 0; i < active.size(); ++i) impulses[active[i]] = (*found)[i];
-        bool is_good = true;
-        for (std::size_t i = 0; i < n && is_good; ++i) {
-            double speed = speeds[i];
-            for (const std::size_t j : active) speed += D[i][j] * impulses[j];
-            is_good = impulses[i] * D[i][i] >= -tolerance && speed >= least[i] - tolerance;
-        }
-        if (is_good) return impulses;
+/// Impulses >= 0 with speeds + D impulses >= least, and one of both zero for each: velocities next to those
+/// before, by the dual method of Goldfarb and Idnani (1983). One after the other of the stops that are passed
+/// fastest is pushed until it is not, while those that push already keep their speed; who would have to pull
+/// is let go. It ends with any number of stops, also where some say what others say.
+class Complementarity {
+public:
+    Complementarity(std::vector<std::vector<double>> D, std::vector<double> speeds, std::vector<double> least)
+        : D_(std::move(D)), speeds_(std::move(speeds)), least_(std::move(least)),
+          impulses_(speeds_.size(), 0.0)
+    {
+        double size = 0;
+        for (std::size_t i = 0; i < speeds_.size(); ++i)
+            size = std::max({size, std::abs(speeds_[i]), std::abs(least_[i])});
+        tolerance_ = 1e-13 * size;
     }
-    return {};
-}
+
+    /// None: no velocities fulfil all.
+    std::optional<std::vector<double>> solve()
+    {
+        // Each step makes the distance from the velocities before longer, so that no set comes again;
+        // rounding may bring one back.
+        const std::size_t most = 100 + 20 * impulses_.size();
+        for (std::size_t step = 0; step < most; ++step) {
+            const std::optional<std::size_t> passed = fastest();
+            if (!passed) return impulses_;
+            if (!push(*passed)) return {};
+        }
+        return {};
+    }
+
+private:
+    double lacking(std::size_t i) const
+    {
+        double speed = speeds_[i] - least_[i];
+        for (std::size_t j = 0; j < impulses_.size(); ++j) speed += D_[i][j] * impulses_[j];
+        return -speed;
+    }
+
+    std::optional<std::size_t> fastest() const
+    {
+        std::optional<std::size_t> found;
+        double most = tolerance_;
+        for (std::size_t i = 0; i < impulses_.size(); ++i)
+            if (const double by = lacking(i); by > most && !is_pushing(i)) most = by, found = i;
+        return found;
+    }
+    bool is_pushing(std::size_t i) const { return std::ranges::find(pushing_, i) != pushing_.end(); }
+
+    /// Until stop i is not passed any more. False: it cannot be.
+    bool push(std::size_t i)
+    {
+        constexpr double follows = 1e-11;   // of what it does to itself: what others do not say already
+        while (true) {
+            const std::optional<std::vector<double>> back = solved(among_pushing(), to_pushing(i));
+            if (!back) return false;
+            double own = D_[i][i];
+            for (std::size_t k = 0; k < pushing_.size(); ++k) own -= D_[i][pushing_[k]] * (*back)[k];
+            constexpr double never = std::numeric_limits<double>::infinity();
+            const double whole = own > follows * D_[i][i] ? lacking(i) / own : never;
+            double step = whole;
+            std::size_t leaves = pushing_.size();
+            for (std::size_t k = 0; k < pushing_.size(); ++k)
+                if ((*back)[k] > 0 && impulses_[pushing_[k]] < step * (*back)[k]) {
+                    step = impulses_[pushing_[k]] / (*back)[k];
+                    leaves = k;
+                }
+            if (step == never) return false;
+            impulses_[i] += step;
+            for (std::size_t k = 0; k < pushing_.size(); ++k) impulses_[pushing_[k]] -= step * (*back)[k];
+            if (leaves == pushing_.size()) {
+                pushing_.push_back(i);
+                return true;
+            }
+            impulses_[pushing_[leaves]] = 0;
+            pushing_.erase(pushing_.begin() + static_cast<std::ptrdiff_t>(leaves));
+        }
+    }
+
+    std::vector<std::vector<double>> among_pushing() const
+    {
+        std::vector<std::vector<double>> part;
+        for (const std::size_t k : pushing_) part.push_back(to_pushing(k));
+        return part;
+    }
+    std::vector<double> to_pushing(std::size_t i) const
+    {
+        std::vector<double> column;
+        for (const std::size_t k : pushing_) column.push_back(D_[k][i]);
+        return column;
+    }
+
+    std::vector<std::vector<double>> D_;
+    std::vector<double> speeds_, least_, impulses_;
+    std::vector<std::size_t> pushing_;
+    double tolerance_ = 0;
+};
 
 }   // namespace
 
@@ -157,7 +220,7 @@ ImpactOutcome impact(const Model& held, const State& before, std::span<const Joi
         for (std::size_t j = 0; j < i; ++j)
             if (is_hit(i) && is_hit(j) && std::abs(D[i][j]) > felt * std::sqrt(D[i][i] * D[j][j]))
                 outcome.are_apart = false;
-    const std::optional<std::vector<double>> impulses = complementary(D, speeds, least);
+    const std::optional<std::vector<double>> impulses = Complementarity(D, speeds, least).solve();
     if (!impulses) return outcome;
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t b = 0; b < n_bodies; ++b) outcome.V[b] += (*impulses)[i] * responses[i][b];

@@ -27,7 +27,7 @@ struct ImpactOutcome {
 /// and of each stop a speed apart of at least its restitution times that together before. Of many at once no
 /// more than `most_stops_at_once` are tried.
 ImpactOutcome impact(const Model& held, const State& before, std::span<const Joint> stops);
-inline constexpr std::size_t most_stops_at_once = 8;
+inline constexpr std::size_t most_stops_at_once = 200;
 
 /// How fast the bodies of a stop go apart, by the sign of its open side.
 double speed_apart(const Joint& stop, const State& state);

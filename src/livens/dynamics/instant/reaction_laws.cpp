@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "livens/base/error.h"
@@ -98,21 +99,39 @@ struct ByReactions {
     }
 };
 
+/// Of the bodies of a load: those that its law acts on, then all others of the model.
+std::vector<int> bodies_of(const ReactionLaw& law, const Model& model)
+{
+    std::vector<int> all = law.units.empty() ? std::vector<int>{0, world} : law.units[0].bodies;
+    for (int b = 0; b < model.n_bodies(); ++b)
+        if (std::ranges::find(all, b) == all.end()) all.push_back(b);
+    return all;
+}
+
+/// What it looks at, and what it says of itself.
+void show(const std::shared_ptr<const ByReactions>& all, const ReactionLaw& law, Load& load)
+{
+    if (law.guarded)
+        load.guarded = [all, guarded = law.guarded](const LoadArguments& at, std::span<double> numbers) {
+            const ByReactions::Seen seen = all->look(at);
+            guarded({at.at, seen.values, seen.rates}, seen.reactions, numbers);
+        };
+    for (std::size_t k = 0; k < law.readings.size(); ++k) {
+        const ReactionLaw::Reading& one = law.readings[k];
+        load.readings.push_back(
+            {one.name, one.unit, [all, k, value = one.value](const LoadArguments& at) {
+                 const ByReactions::Seen seen = all->look(at);
+                 return value ? value({at.at, seen.values, seen.rates}, seen.reactions) : seen.factors[k];
+             }});
+    }
+}
+
 Load load_by(const std::shared_ptr<ReactionMechanism>& mechanism, std::size_t index)
 {
     const ReactionLaw& law = mechanism->laws()[index];
-    const std::string path = "load[" + law.name + "]";
-    if (law.units.empty())
-        throw InputError({"load-empty", path, "a load needs units and a law", "", "", "", ""});
-    for (const Load& unit : law.units)
-        if (unit.bodies != law.units[0].bodies || unit.bodies.size() != 2)
-            throw InputError({"load-empty", path, "units of a load act on the same bodies", "", "", "", ""});
-    Load load;
-    load.name = law.name;
-    load.type = law.type;
-    load.bodies = law.units[0].bodies;
-    for (int b = 0; b < mechanism->model().n_bodies(); ++b)
-        if (std::ranges::find(load.bodies, b) == load.bodies.end()) load.bodies.push_back(b);
+    Load load = waiting(law);
+    load.bodies = bodies_of(law, mechanism->model());
+    load.readings.clear();
     ByReactions made{mechanism, index, load.bodies, {}};
     for (const Load& one : mechanism->model().loads())
         load.angles.insert(load.angles.end(), one.angles.begin(), one.angles.end());
@@ -124,35 +143,55 @@ Load load_by(const std::shared_ptr<ReactionMechanism>& mechanism, std::size_t in
             made.coordinates.back().back().place(load, q.is_needed);
         }
     }
-    for (const Load& unit : law.units)
-        for (std::size_t b = 0; b < 2; ++b)
-            load.needs_directors[b] = load.needs_directors[b] || unit.needs_directors[b];
-    load.depends_on_X = load.depends_on_V = true;
-    load.breaks = law.breaks;
-    load.domain = "no force fits the reactions that it reads, or several do, or joints lose rank there";
+    for (const TimeSpan& span : law.times.spans())
+        for (const double t : {span.from, span.until})
+            if (std::isfinite(t)) load.breaks.push_back(t);
+    std::ranges::sort(load.breaks);
+    load.domain = "no force fits the reactions that it reads, or several do, or joints lose rank there or "
+                  "share what they bear, so that it is not known";
     load.guards = law.guards;
     const auto all = std::make_shared<const ByReactions>(std::move(made));
+    show(all, law, load);
+    load.is_smooth = law.units.empty();
+    if (law.units.empty()) return load;
+    load.depends_on_X = load.depends_on_V = true;
     load.forces = [all](const LoadArguments& at, LoadForces& F) { all->forces(at, F); };
     load.tangent = [all](const LoadArguments& at, LoadTangent& out) { all->tangent(at, out); };
-    if (law.guarded)
-        load.guarded = [all, guarded = law.guarded](const LoadArguments& at, std::span<double> numbers) {
-            const ByReactions::Seen seen = all->look(at);
-            guarded({at.at, seen.values, seen.rates}, seen.reactions, numbers);
-        };
-    for (std::size_t k = 0; k < law.readings.size(); ++k)
-        load.readings.push_back({law.readings[k].name, law.readings[k].unit,
-                                 [all, k](const LoadArguments& at) { return all->look(at).factors[k]; }});
+    if (law.type == controller_type)   // no work on what has mass
+        load.power = [](const LoadArguments&) { return 0.0; };
     return load;
 }
 
 }   // namespace
 
-std::vector<Load> loads_by_reactions(const Model& model, const std::vector<ReactionLaw>& laws)
+std::vector<Load> loads_by_reactions(const Model& rest, const std::vector<ReactionLaw>& laws)
 {
-    const auto mechanism = std::make_shared<ReactionMechanism>(model, laws);
+    const auto mechanism = std::make_shared<ReactionMechanism>(rest, laws);
     std::vector<Load> loads;
     for (std::size_t i = 0; i < laws.size(); ++i) loads.push_back(load_by(mechanism, i));
     return loads;
+}
+
+void check_reaction_laws(const Model& model, double t)
+{
+    const ActingModel acting = acting_at(model, t);
+    State start = acting.model.start();
+    start.t = t;
+    const UniqueReactions found = unique_reactions(acting.model, start);
+    for (const Load& load : acting.model.loads()) {
+        if (load.by_reactions == nullptr) continue;
+        for (const ReactionInput& input : load.by_reactions->reactions) {
+            const auto j = static_cast<std::size_t>(input.joint);
+            if (input.joint < 0 || found.joint_is_unique[j]) continue;
+            throw InputError({"event-reaction", "load[" + load.name + "]",
+                              "a law reads a reaction of joint '" + acting.model.joints()[j].name +
+                                  "' that is not unique: other joints could carry " +
+                                  livens::in_words(found.shared[j]),
+                              "", "", "bodies are held more often than they need to be",
+                              "let joints hold what they must and no more, as a spherical joint in place of "
+                              "a revolute one"});
+        }
+    }
 }
 
 }   // namespace livens

@@ -183,6 +183,9 @@ void Assembly::read_all_drives()
             const std::vector<Joint>& all = part.builder_.model().joints();
             for (std::size_t j = n_joints; j < all.size(); ++j)
                 builder_.model().add_joint(relocated(all[j], part.to_));
+            part.to_.joint = [&part, this](int j) {   // drives and stops stand behind all joints
+                return builder_.model().find_joint(part.to_.name(part.builder_.model().joints()[j].name));
+            };
         });
     read_drives(builder_);
     read_stops(builder_);
@@ -240,12 +243,8 @@ void Assembly::read_all_events(bool is_run)
 {
     each_part([](Assembly& part) { part.read_all_events(false); },
               [&](Assembly& part) {
-                  const Model& own = part.builder_.model();
-                  const auto joint = [&](int j) {   // drives and stops stand behind all joints
-                      return builder_.model().find_joint(part.to_.name(own.joints()[j].name));
-                  };
-                  for (const Event& event : own.events())
-                      builder_.model().add_event(relocated(event, part.to_, joint));
+                  for (const Event& event : part.builder_.model().events())
+                      builder_.model().add_event(relocated(event, part.to_));
               });
     read_events(builder_, is_run);
 }
@@ -279,6 +278,7 @@ void Assembly::read_model()
     read_all_sensors(false);
     read_all_controllers();
     read_all_loads();
+    bind_loads(builder_);
     read_all_sensors(true);
     read_all_events(true);
     complete_looks();

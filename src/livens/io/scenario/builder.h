@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "livens/base/error.h"
-#include "livens/dynamics/instant/reaction_laws.h"
 #include "livens/io/scenario.h"
 #include "livens/io/scenario/bodies/meshes.h"
 #include "livens/io/scenario/joints/inputs.h"
@@ -48,7 +47,6 @@ public:
     std::vector<std::vector<NamedSurface>>& surfaces() { return surfaces_; }   ///< of the bodies so far
     MeshStore& meshes() { return meshes_; }
     std::vector<StatedConditions>& conditions() { return conditions_; }
-    std::vector<ReactionLaw>& reaction_laws() { return reaction_laws_; }   ///< of loads to come
     std::vector<ReadController>& controllers() { return controllers_; }
     const std::vector<ReadController>& controllers() const { return controllers_; }
     /// Once all bodies are there, also those around what is included.
@@ -117,7 +115,6 @@ private:
     MeshStore& meshes_;
     std::vector<StatedConditions> conditions_;
     std::vector<ReadController> controllers_;
-    std::vector<ReactionLaw> reaction_laws_;
     std::vector<std::string> excused_;
     std::unordered_map<std::string, BodyReference> bodies_;
     std::map<std::string, SourceLocation> places_;

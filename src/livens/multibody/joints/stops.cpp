@@ -41,7 +41,7 @@ int add_stop(Model& model, Joint stop, const StopLaw& law, EventTerms terms,
     model.add_event(
         {name, name + sign + to_text(law.limit), std::move(terms), {EventAction::Does::begin, joint}});
     EventTerms pulls;   // its force would be towards its closed side
-    pulls.reactions = {{joint, false, -1, true}};
+    pulls.reactions = {{joint, false, {}, true}};
     pulls.n_terms = 1;
     pulls.when = {{0}};
     pulls.values = [side](const LawArguments&, std::span<const double> reactions, std::span<double> out) {

@@ -5,6 +5,7 @@
 #include "livens/multibody/loads/load_laws.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "livens/base/error.h"
@@ -18,7 +19,8 @@ namespace {
 /// The type of a unit that is a generalised force.
 constexpr const char* of_coordinate = "unit";
 
-/// What a load is made of, and how it is evaluated.
+/// What a load is made of, and how it is evaluated. Its functions share it, as models are copied for each
+/// phase of a motion.
 struct Modulated {
     LoadParts parts;
     std::vector<LoadCoordinate> coordinates;
@@ -92,29 +94,6 @@ struct Modulated {
         for (int k = 0; k < n; ++k) factors[static_cast<std::size_t>(k)] = results[k];
     }
 
-    LawInside inside() const
-    {
-        const std::size_t m = coordinates.size();
-        LawInside law;
-        law.n_numbers = 2 * m;
-        law.n_factors = parts.units.size();
-        law.numbers = [all = *this, m](const LoadArguments& arguments, std::span<double> numbers) {
-            const Seen seen = all.look(arguments);
-            std::ranges::copy(seen.values, numbers.begin());
-            std::ranges::copy(seen.rates, numbers.begin() + static_cast<std::ptrdiff_t>(m));
-        };
-        law.factors = [of = parts.law, m](Instant at, std::span<const double> numbers,
-                                          std::span<double> factors) {
-            of({at, numbers.first(m), numbers.subspan(m)}, factors, {});
-        };
-        law.unit = [units = parts.units](const LoadArguments& arguments, std::size_t k, LoadForces& F) {
-            units[k].forces(arguments, F);
-        };
-        law.steepest = parts.steepest;
-        law.only_at_centre = parts.is_smooth_off_centre;
-        return law;
-    }
-
     /// The slopes of factors alone, and of coordinates as they stand.
     std::vector<ProductSlopes> products(const LoadArguments& arguments) const
     {
@@ -168,22 +147,48 @@ void collect_bodies(Load& load, const std::vector<LoadCoordinate>& coordinates)
                 load.bodies.push_back(body);
 }
 
-/// Where the law bends, and what is to be looked at.
-void add_smoothness(Load& load, const Modulated& all)
+using SharedLaw = std::shared_ptr<const Modulated>;
+
+LawInside inside_of(const SharedLaw& all)
 {
-    const LoadParts& parts = all.parts;
+    const std::size_t m = all->coordinates.size();
+    LawInside law;
+    law.n_numbers = 2 * m;
+    law.n_factors = all->parts.units.size();
+    law.numbers = [all, m](const LoadArguments& arguments, std::span<double> numbers) {
+        const Modulated::Seen seen = all->look(arguments);
+        std::ranges::copy(seen.values, numbers.begin());
+        std::ranges::copy(seen.rates, numbers.begin() + static_cast<std::ptrdiff_t>(m));
+    };
+    law.factors = [all, m](Instant at, std::span<const double> numbers, std::span<double> factors) {
+        all->parts.law({at, numbers.first(m), numbers.subspan(m)}, factors, {});
+    };
+    law.unit = [all](const LoadArguments& arguments, std::size_t k, LoadForces& F) {
+        all->parts.units[k].forces(arguments, F);
+    };
+    if (all->parts.steepest)
+        law.steepest = [all](const EnclosedValue& t, std::span<const EnclosedValue> numbers,
+                             std::span<double> bounds) { all->parts.steepest(t, numbers, bounds); };
+    law.only_at_centre = all->parts.is_smooth_off_centre;
+    return law;
+}
+
+/// Where the law bends, and what is to be looked at.
+void add_smoothness(Load& load, const SharedLaw& all)
+{
+    const LoadParts& parts = all->parts;
     load.is_smooth = parts.is_smooth;
     // Smooth laws need no looks between the load points (theory.md, "Looks at laws").
-    if (!load.is_smooth) load.inside = all.inside();
+    if (!load.is_smooth) load.inside = inside_of(all);
     load.guards = parts.guards.guards;
     if (parts.guards.values)
         load.guarded = [all](const LoadArguments& arguments, std::span<double> numbers) {
-            all.parts.guards.values(all.look(arguments).arguments(arguments.at), numbers);
+            all->parts.guards.values(all->look(arguments).arguments(arguments.at), numbers);
         };
     load.bends_at_centre = static_cast<bool>(parts.guards.centre);
     if (parts.guards.centre)
         load.centre = [all](const LoadArguments& arguments) {
-            return all.parts.guards.centre(all.look(arguments).arguments(arguments.at));
+            return all->parts.guards.centre(all->look(arguments).arguments(arguments.at));
         };
 }
 
@@ -202,12 +207,13 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
             refuse("units of a load act on the same bodies, whatever their velocity");
     const std::vector<int>& bodies = parts.units[0].bodies;
     Load load = start_load(name, type.c_str(), {bodies[0], bodies[1]});
-    Modulated all{parts, {}};
+    Modulated made{parts, {}};
     for (const LawCoordinate& q : parts.coordinates)
-        all.coordinates.emplace_back(q.coordinate, q.at_stated, X);
-    collect_bodies(load, all.coordinates);
-    for (std::size_t i = 0; i < all.coordinates.size(); ++i)
-        all.coordinates[i].place(load, parts.coordinates[i].is_needed);
+        made.coordinates.emplace_back(q.coordinate, q.at_stated, X);
+    collect_bodies(load, made.coordinates);
+    for (std::size_t i = 0; i < made.coordinates.size(); ++i)
+        made.coordinates[i].place(load, parts.coordinates[i].is_needed);
+    const SharedLaw all = std::make_shared<const Modulated>(std::move(made));
     load.depends_on_X = !parts.coordinates.empty();
     load.depends_on_V = parts.depends_on_rates;
     load.breaks = parts.breaks;
@@ -219,18 +225,18 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
         for (std::size_t b = 0; b < 2; ++b)
             load.needs_directors[b] = load.needs_directors[b] || unit.needs_directors[b];
     }
-    load.forces = [all](const LoadArguments& arguments, LoadForces& F) { all.forces(arguments, F); };
+    load.forces = [all](const LoadArguments& arguments, LoadForces& F) { all->forces(arguments, F); };
     load.tangent = [all](const LoadArguments& arguments, LoadTangent& tangent) {
-        all.tangent(arguments, tangent);
+        all->tangent(arguments, tangent);
     };
     if (std::ranges::all_of(parts.units, [](const Load& unit) { return unit.type == of_coordinate; }))
-        load.products = [all](const LoadArguments& arguments) { return all.products(arguments); };
+        load.products = [all](const LoadArguments& arguments) { return all->products(arguments); };
     if (std::ranges::all_of(parts.units, [](const Load& unit) { return unit.forces.record != nullptr; }))
-        load.forces.record = [all](LoadTape& tape, const TapeNumber& factor) { all.record(tape, factor); };
-    const auto energy = [&](const LawEnergy& of) -> std::function<double(const LoadArguments&)> {
-        if (!of) return nullptr;
-        return [all, of](const LoadArguments& arguments) {
-            return of(all.look(arguments).arguments(arguments.at));
+        load.forces.record = [all](LoadTape& tape, const TapeNumber& factor) { all->record(tape, factor); };
+    const auto energy = [&](const LawEnergy& given) -> std::function<double(const LoadArguments&)> {
+        if (!given) return nullptr;
+        return [all, of = std::make_shared<const LawEnergy>(given)](const LoadArguments& arguments) {
+            return (*of)(all->look(arguments).arguments(arguments.at));
         };
     };
     for (const LawReading& reading : parts.readings)
@@ -239,7 +245,7 @@ Load modulated(const std::string& name, const std::string& type, const LoadParts
     load.potential = energy(parts.potential);
     load.power = energy(parts.power);
     if (parts.recorded_power)
-        load.recorded_power = [all](LoadTape& tape) { return all.parts.recorded_power(all.on(tape)); };
+        load.recorded_power = [all](LoadTape& tape) { return all->parts.recorded_power(all->on(tape)); };
     return load;
 }
 
@@ -260,13 +266,14 @@ Load unit_along(const std::string& name, const JointCoordinate& coordinate, cons
     along.place(load, false);   // its direction is the same in every turn
     load.depends_on_X = true;
     load.needs_directors = along.needs_directors();
-    load.forces = [along](const LoadArguments& arguments, LoadForces& F) {
-        along.add_forces(arguments, 1, F);
+    const auto shared = std::make_shared<const LoadCoordinate>(std::move(along));
+    load.forces = [shared](const LoadArguments& arguments, LoadForces& F) {
+        shared->add_forces(arguments, 1, F);
     };
-    load.tangent = [along](const LoadArguments& arguments, LoadTangent& tangent) {
-        along.add_tangent(arguments, {1, 0, 0}, tangent);
+    load.tangent = [shared](const LoadArguments& arguments, LoadTangent& tangent) {
+        shared->add_tangent(arguments, {1, 0, 0}, tangent);
     };
-    load.forces.record = [along](LoadTape& tape, const TapeNumber& factor) { along.pull(tape, factor); };
+    load.forces.record = [shared](LoadTape& tape, const TapeNumber& factor) { shared->pull(tape, factor); };
     return load;
 }
 

@@ -62,6 +62,9 @@ std::string of_failure(const NewtonReport& outcome, int max_iterations, const st
     } else if (outcome.status == SolveStatus::not_finite) {
         what = worst.bad_load.empty() ? "a number became infinite or undefined" : worst.bad_load;
         fitting = "look at the loads near that time; use more elements";
+    } else if (!worst.bad_load.empty()) {
+        what += " since " + worst.bad_load;
+        fitting = "look at the loads near that time; use more elements";
     }
     if (advice.empty()) advice = std::move(fitting);
     const std::string where =

@@ -120,9 +120,15 @@ private:
             if (!found.is_found)
                 return refuse("no velocities behind the impact of " + names_of(model_, begins_) + " at " +
                               to_text(before_.t, 6) + " s fulfil the joints, which lose rank there");
+            bool is_handed_on = false;   // by bodies that touched without moving together
+            for (std::size_t k = 0; k < n_new_; ++k)
+                if (found.stops[k].impulse > 0 && !is_hit(stops_[k])) {
+                    hit_.push_back(stops_[k]);
+                    is_handed_on = true;
+                }
             const bool is_named =
                 std::ranges::all_of(hit_, [&](int j) { return model_.joints()[j].impact->goes_together; });
-            if (hit_.size() > 1 && !found.are_apart && !is_named)
+            if (hit_.size() > 1 && (!found.are_apart || is_handed_on) && !is_named)
                 return refuse(names_of(model_, hit_) + " are hit at the same instant, " +
                               to_text(before_.t, 6) +
                               " s, and feel each other: what happens is a law of its own, which they have to "
@@ -157,7 +163,8 @@ private:
             const double e = stop.impact->restitution, slow = no_speed * fastest(before_, stop),
                          apart = one.is_hit ? e * one.approach : speed_apart(stop, behind),
                          together = -acceleration_apart(stop, held_.with(both_ways_, closed), behind);
-            if (!(together > 0) || apart < -slow) continue;   // nothing presses
+            const double of_rounding = slow * fastest(before_, stop) / model_.length();
+            if (!(together > of_rounding) || apart < -slow) continue;   // nothing presses
             const double rebound = std::max(apart, 0.0), hop = rebound * rebound / (2 * together);
             one.closes = hop < lowest_hop * stop.rows[0].scale || rebound <= slow;
             if (!one.closes) continue;
@@ -218,6 +225,37 @@ void check_stops(const Model& model, const State& start)
                           to_text(one.depth * joint.rows[0].scale, 6), "", "a stop lets nothing beyond it",
                           "begin on its open side, or change its limits"});
     }
+}
+
+std::vector<int> stops_beside(const Model& model, const Decisions& decisions, const std::vector<int>& events,
+                              const State& reached)
+{
+    std::vector<int> found;
+    for (int e = 0; !events.empty() && e < static_cast<int>(model.events().size()); ++e) {
+        const EventAction& action = model.events()[static_cast<std::size_t>(e)].action;
+        const Joint* joint = begun_by_impact(model, action);
+        const bool is_other = joint != nullptr && is_stop(*joint) && decisions.is_armed(action, reached.t) &&
+                              std::ranges::find(events, e) == events.end();
+        if (is_other && std::abs(gap_of(*joint, reached)) <= touching_stop * joint->rows[0].scale)
+            found.push_back(e);
+    }
+    if (found.empty()) return found;
+    for (const StopDepth& one : depths_of_stops(model, reached))   // which knows turns
+        if (std::abs(one.depth) > touching_stop) std::erase(found, one.event);
+    return found;
+}
+
+double slope_of_row(const Event& event, const State& state)
+{
+    const std::vector<LawCoordinate>& all = event.terms.coordinates;
+    if (all.size() == 3) {
+        Vector3 line{};
+        for (int i = 0; i < 3; ++i)
+            line[i] = coordinate_value(all[static_cast<std::size_t>(i)].coordinate, state.X);
+        return norm(line);
+    }
+    const bool is_sine = all.size() == 1 && all[0].coordinate.kind == CoordinateKind::arc_sine;
+    return is_sine ? std::cos(coordinate_value(all[0].coordinate, state.X)) : 1;
 }
 
 ContactOutcome meet_joints(const Model& model, const Decisions& decisions, const State& reached,

@@ -35,6 +35,17 @@ std::vector<StopDepth> depths_of_stops(const Model& model, const State& start);
 /// Throws InputError `stop-violated` where a state is beyond a stop.
 void check_stops(const Model& model, const State& start);
 
+/// Of the scale of a stop's row: bodies that are so near are at it.
+inline constexpr double touching_stop = 1e-12;
+/// Where these events meet stops, those that close others at which bodies are without a force, as balls of a
+/// row before another one hits it: the impact goes on through them.
+std::vector<int> stops_beside(const Model& model, const Decisions& decisions, const std::vector<int>& events,
+                              const State& reached);
+
+/// Of a stop that is met: how fast its row changes with its coordinate, of which speeds are told. That of a
+/// distance is half its square.
+double slope_of_row(const Event& event, const State& state);
+
 /// Joints of a model with ImpactLaw that begin at a state, where what else begins or ends there has been
 /// decided. Hops lower than `lowest_hop` times the row's scale are left out: the stop closes.
 /// (docs/theory.md, "Impacts")

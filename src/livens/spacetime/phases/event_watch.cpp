@@ -35,12 +35,6 @@ std::vector<double> numbers_of(const std::vector<Matrix34>& all)
     return numbers;
 }
 
-double component_of(const Reaction& reaction, const ReactionInput& input)
-{
-    const Vector3& v = input.is_torque ? reaction.torque : reaction.force;
-    return input.component < 0 ? norm(v) : v[input.component];
-}
-
 void refuse_shared(const Model& model, const ActingModel& acting, const ModelTables& tables,
                    const Event& event, const State& start)
 {
@@ -63,7 +57,8 @@ void refuse_shared(const Model& model, const ActingModel& acting, const ModelTab
 
 }   // namespace
 
-EventWatch::EventWatch(const Model& model, ActingModel acting, std::vector<bool> armed, const State& start)
+EventWatch::EventWatch(const Model& model, ActingModel acting, std::vector<bool> armed, const State& start,
+                       const std::vector<double>& slack)
     : whole_(model), acting_(std::move(acting)), armed_(std::move(armed)), start_(start),
       first_watch_(static_cast<int>(acting_.model.loads().size()))
 {
@@ -89,8 +84,12 @@ EventWatch::EventWatch(const Model& model, ActingModel acting, std::vector<bool>
             std::ranges::any_of(acting_.model.loads(), [&](const Load& l) { return l.name == watch.name; }))
             watch.name += "'";
         const int e = static_cast<int>(acting_.model.loads().size()) - first_watch_;
-        slack_.push_back(is_open_stop(e) ? beyond_stop * whole_.joints()[event.action.joint].rows[0].scale
-                                         : 0);
+        double size = is_open_stop(e) ? beyond_stop : 0;
+        if (size > 0 && !slack.empty()) size *= slack[static_cast<std::size_t>(e)];
+        const bool is_distance = event.terms.coordinates.size() == 3;   // the row has squares
+        if (size > 0)
+            size *= is_distance ? whole_.length() : whole_.joints()[event.action.joint].rows[0].scale;
+        slack_.push_back(size);
         if (slack_[e] > 0)
             watch.guarded = [exact = watch.guarded, by = slack_[e]](const LoadArguments& at,
                                                                     std::span<double> out) {
@@ -139,7 +138,7 @@ std::function<void(const LoadArguments&, std::span<double>)> EventWatch::reactio
             for (const ConstraintRow& row : joint.rows)
                 F -= *multiplier++ *
                      constraint_gradient(frozen(row, {at.at.t, side}), state.X).of(joint.second);
-            numbers[k] = component_of(joint_reaction(joint, state.X[joint.second], F), inputs[k]);
+            numbers[k] = number_of(joint_reaction(joint, state.X[joint.second], F), inputs[k]);
         }
     };
 }

@@ -19,8 +19,10 @@ class EventWatch {
 public:
     /// `armed`: of each event of the model, whether something would happen. `start`: of the phase; what its
     /// angles lack of those that events count has not turned yet. Throws InputError `event-reaction` for a
-    /// reaction that is not unique there.
-    EventWatch(const Model& model, ActingModel acting, std::vector<bool> armed, const State& start);
+    /// reaction that is not unique there. `slack`: of open stops, how many times what rounding has beyond
+    /// them is not looked at; empty: once.
+    EventWatch(const Model& model, ActingModel acting, std::vector<bool> armed, const State& start,
+               const std::vector<double>& slack = {});
 
     /// With the loads that watch, which come last.
     const Model& model() const { return acting_.model; }
@@ -49,6 +51,8 @@ public:
     bool holds_now(int event) const { return holds_at(event, start_); }
     /// How far a condition is from changing in a state, in units of its formulas: positive where it is true.
     double margin(int event, const State& state) const;
+    /// What of the margin of an open stop is rounding; 0 for all else.
+    double slack(int event) const { return slack_[static_cast<std::size_t>(event)]; }
     /// Angles on the way to a configuration.
     void follow(const std::vector<Matrix34>& X, std::vector<double>& angles) const;
 

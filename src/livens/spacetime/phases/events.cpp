@@ -280,6 +280,21 @@ std::string begin_in_words(const Model& model, double start, double end)
     return words;
 }
 
+void date_notes(const std::vector<std::string>& known, double t, std::vector<std::string>& notes)
+{
+    for (std::string& note : notes)
+        if (std::ranges::find(known, note) == known.end()) note = "from " + to_text(t, 6) + " s on: " + note;
+}
+
+std::string of_storm(const Model& model, const std::vector<SolvedEvent>& events, std::size_t n, double t)
+{
+    const std::string last =
+        events.empty() ? "" : model.events()[static_cast<std::size_t>(events.back().event)].name;
+    return "events follow each other without an end: " + std::to_string(n) + " so far, the last of them '" +
+           last + "' at " + to_text(t, 9) +
+           " s; try: conditions that leave some way between what begins and what ends";
+}
+
 void tell_releases(const Model& model, const Motion& motion, const std::vector<double>& ends,
                    SolveReport& report)
 {

@@ -10,6 +10,7 @@
 #include "livens/multibody/motion.h"
 #include "livens/solvers/report.h"
 #include "livens/spacetime/options.h"
+#include "livens/spacetime/solve.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -49,6 +50,11 @@ bool is_met(const Model& model, const Motion& motion, int end, double duration, 
 /// "'latch' begins to act at 0.5 s": joints that begin between two instants, for a motion that was not found;
 /// empty: none does.
 std::string begin_in_words(const Model& model, double start, double end);
+
+/// Notes of a phase that begins at t, but for those that are known: when it was.
+void date_notes(const std::vector<std::string>& known, double t, std::vector<std::string>& notes);
+/// Why a motion ends where events follow each other without an end: n until t.
+std::string of_storm(const Model& model, const std::vector<SolvedEvent>& events, std::size_t n, double t);
 
 /// Notes on what joints did when they let go.
 void tell_releases(const Model& model, const Motion& motion, const std::vector<double>& phase_ends,

@@ -110,6 +110,7 @@ double undecided_place(const Model& model, const Motion& motion, const Motion& o
             std::vector<double> seen;
             for (int k = 0; k <= n_looks; ++k) seen.push_back(f(k / double(n_looks)));
             const double range = *std::ranges::max_element(seen) - *std::ranges::min_element(seen);
+            if (range <= looks->watch().slack(event)) continue;   // bodies move side by side
             for (int k = 1; k < n_looks; ++k) {
                 const bool is_top = seen[k] < 0 && seen[k] >= seen[k - 1] && seen[k] >= seen[k + 1];
                 if (!is_top || !(-seen[k] < range)) continue;

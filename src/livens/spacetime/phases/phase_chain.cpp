@@ -27,8 +27,6 @@ namespace {
 constexpr int stormy = 200, most_events = 100'000, most_beside = 500;   // of a neighbour in a window
 constexpr double no_time = 1e-6;
 constexpr int most_turns = 60;
-/// Of the scale of a stop's row, at the start of the motion.
-constexpr double touching_start = 1e-12;
 
 /// One phase after the other: up to what is known beforehand, or what the motion decides.
 class Chain {
@@ -49,6 +47,7 @@ public:
         Solution whole;
         Way at{problem_, options_, Decisions(given_, start_of(time_)), start_of(time_)};
         at.method = std::move(method);
+        at.slack.assign(stated_.events().size(), 1.0);
         begin_at_stops(at, whole);
         if (State& start = at.problem.conditions.start; !start.is_of_motion)
             ask_controllers(stated_, nearest(), start);
@@ -74,6 +73,7 @@ private:
         bool jumps = false;               // behind an impact
         double length = 0;                // of the longest element of the phase before
         std::vector<double> ends{};       // where events have ended phases
+        std::vector<double> slack{};      // of each event, see EventWatch
         std::vector<double> rounding{};   // of instants of events, where the phase has ended with them
     };
 
@@ -81,6 +81,12 @@ private:
     Model decided(const Way& at) const
     {
         return stated_.events().empty() ? stated_ : as_decided(stated_, at.decisions.times());
+    }
+    /// What formulas say at an instant: those that read reactions see the joints that act by then.
+    template <class Question>
+    auto ask(const Way& at, const Question& question) const
+    {
+        return reads_reactions(stated_) ? question(decided(at)) : question(stated_);
     }
 
     /// False: the motion ends, and the report says why, unless an event has ended it.
@@ -97,10 +103,7 @@ private:
         }
         const Model& model = watch != nullptr ? watch->model() : acting.model;
         Solution next = solve_next(model, at, last, accuracy);
-        if (at.first > known_.front())
-            for (std::string& note : next.report.notes)
-                if (std::ranges::find(whole.report.notes, note) == whole.report.notes.end())
-                    note = "from " + to_text(at.first, 6) + " s on: " + note;
+        if (at.first > known_.front()) date_notes(whole.report.notes, at.first, next.report.notes);
         if (next.motion.mesh.ends.empty()) {
             whole.report += std::move(next.report);
             whole.cannot_begin = std::move(next.cannot_begin);
@@ -135,7 +138,10 @@ private:
         if (!whole.report.converged()) return false;
         at.first = end;
         const bool goes_on = act(at, fired, reached, whole);
-        if (goes_on && ask_controllers(stated_, nearest(), reached)) {
+        const bool is_asked = goes_on && ask(at, [&](const Model& by_then) {
+                                  return ask_controllers(by_then, nearest(), reached);
+                              });
+        if (is_asked) {
             at.jumps = true;
             if (at.first >= known_.back()) jump_at_end(whole.motion, stated_, reached.V);
         }
@@ -190,7 +196,8 @@ private:
                 event.action.does == EventAction::Does::end_motion && !problem_.ends_by_events;
             armed.push_back(!is_idle && at.decisions.is_armed(event.action, at.first));
         }
-        return std::make_unique<EventWatch>(stated_, acting, std::move(armed), at.problem.conditions.start);
+        return std::make_unique<EventWatch>(stated_, acting, std::move(armed), at.problem.conditions.start,
+                                            at.slack);
     }
 
     /// A phase that cannot begin leaves what was solved before it.
@@ -274,7 +281,9 @@ private:
             whole.events.push_back({e, at.first});
             whole.events.back().rounding = at.rounding[static_cast<std::size_t>(e)];
             if (action.does == EventAction::Does::set) {
-                change_states(stated_, stated_.events()[static_cast<std::size_t>(e)].change, reached);
+                ask(at, [&](const Model& model) {
+                    change_states(model, model.events()[static_cast<std::size_t>(e)].change, reached);
+                });
                 at.jumps = at.first > known_.front();
             }
             goes_on = goes_on && action.does != EventAction::Does::end_motion;
@@ -284,9 +293,13 @@ private:
     }
 
     /// Impacts of joints that these events begin, and of those that begin there as stated.
-    bool meet(Way& at, const std::vector<int>& events, State& reached, Solution& whole) const
+    bool meet(Way& at, std::vector<int> events, State& reached, Solution& whole) const
     {
         std::vector<int> begins;
+        if (at.first > known_.front()) {   // at the start all are known
+            const std::vector<int> beside = stops_beside(stated_, at.decisions, events, reached);
+            events.insert(events.end(), beside.begin(), beside.end());
+        }
         for (const int e : events)
             if (const int joint = stated_.events()[static_cast<std::size_t>(e)].action.joint;
                 std::ranges::find(begins, joint) == begins.end())   // by several conditions
@@ -305,7 +318,7 @@ private:
             whole.report.message = outcome.refused;
             return false;
         }
-        for (std::size_t k = 0; k < events.size(); ++k) tell_contact(at, events[k], outcome, whole);
+        for (std::size_t k = 0; k < events.size(); ++k) tell_contact(at, events[k], outcome, reached, whole);
         for (const int j : outcome.opens)
             for (std::size_t e = 0; e < stated_.events().size(); ++e) {
                 const EventAction& action = stated_.events()[e].action;
@@ -318,15 +331,23 @@ private:
         return true;
     }
 
-    void tell_contact(Way& at, int event, const ContactOutcome& outcome, Solution& whole) const
+    void tell_contact(Way& at, int event, const ContactOutcome& outcome, const State& reached,
+                      Solution& whole) const
     {
         const EventAction& action = stated_.events()[static_cast<std::size_t>(event)].action;
         const auto of = std::ranges::find(outcome.begun, action.joint, &Contact::joint);
-        if (of == outcome.begun.end() || (!of->is_hit && !of->closes)) return;   // it is only touched
+        if (of == outcome.begun.end()) return;
+        // Bodies that move side by side are beyond their stop by rounding, which adds up: it is only touched.
+        constexpr double more = 4, most = 1e4;
+        double& slack = at.slack[static_cast<std::size_t>(event)];
+        const bool is_met = of->is_hit || of->closes;
+        slack = is_met ? 1 : std::min(more * slack, most);
+        if (!is_met) return;
         SolvedEvent one{event, at.first};
-        one.impulse = of->impulse;
+        const double unit = slope_of_row(stated_.events()[static_cast<std::size_t>(event)], reached);
+        one.impulse = of->impulse * unit;
         if (!at.rounding.empty()) one.rounding = at.rounding[static_cast<std::size_t>(event)];
-        one.speed = of->approach;
+        one.speed = of->approach / unit;
         if (of->closes) {
             at.decisions.act(stated_, action, at.first);
             if (stated_.joints()[action.joint].impact->open_side != 0) one.rests_at = of->rests_at;
@@ -340,7 +361,7 @@ private:
         State& start = at.problem.conditions.start;
         std::vector<int> touched;
         for (const StopDepth& one : depths_of_stops(stated_, start))
-            if (one.depth >= -touching_start) touched.push_back(one.event);
+            if (one.depth >= -touching_stop) touched.push_back(one.event);
         if (touched.empty() || meet(at, touched, start, whole)) return;
         throw InputError({"impact-simultaneous", "start", "stops are hit at once where the motion begins", "",
                           "", whole.report.message, "begin apart from them"});
@@ -354,15 +375,9 @@ private:
         const double since = at.ends[n - stormy], time = known_.back() - known_.front();
         const std::size_t most = problem_.ends_by_events ? most_events : most_beside;
         if (n < most && at.first - since > no_time * time) return false;
-        SolveReport& report = whole.report;
-        report.status = SolveStatus::not_converged;
-        report.failed_at = at.first;
-        const std::string last =
-            whole.events.empty() ? ""
-                                 : stated_.events()[static_cast<std::size_t>(whole.events.back().event)].name;
-        report.message = "events follow each other without an end: " + std::to_string(n) +
-                         " so far, the last of them '" + last + "' at " + to_text(report.failed_at, 9) +
-                         " s; try: conditions that leave some way between what begins and what ends";
+        whole.report.status = SolveStatus::not_converged;
+        whole.report.failed_at = at.first;
+        whole.report.message = of_storm(stated_, whole.events, n, at.first);
         return true;
     }
 

@@ -27,7 +27,15 @@ void ControllerReader::measure(SizesOfStates& sizes) const
     const State at = builder_.model().start();
     const Model& at_start = builder_.model();
     std::vector<double> numbers, reach;   // at the start, and by how much they may change
+    double weight = 0;
+    for (const Body& body : at_start.bodies())
+        weight += norm(livens::weight(body, at_start.gravity()).column(0));
     for (const Inputs::Read& read : inputs_.reads) {
+        if (read.reaction >= 0) {   // what joints bear by then is of the size of the weight
+            numbers.push_back(weight);
+            reach.push_back(0.1 * weight);
+            continue;
+        }
         const LawCoordinate& q = inputs_.coordinates[read.coordinate];
         numbers.push_back(read.is_rate ? coordinate_rate(q.coordinate, at.X, at.V) : q.at_stated);
         const int body = q.coordinate.forms[0].body_j;
@@ -61,22 +69,20 @@ double ControllerReader::decay_of(std::size_t k, const std::vector<double>& slop
                : std::abs(slopes[static_cast<std::size_t>(own - inputs_.symbols.begin())]);
 }
 
-std::vector<LawReading> ControllerReader::readings(const std::vector<Expression>& of_outputs)
+std::vector<ReactionLaw::Reading> ControllerReader::readings(const std::vector<Expression>& of_outputs)
 {
-    std::vector<LawReading> all;
+    std::vector<ReactionLaw::Reading> all;
     for (const ReadController::State& state : own().states) {
         std::size_t k = 0;   // its coordinate
         while (k < inputs_.coordinates.size() &&
                !is_same(inputs_.coordinates[k].coordinate, state.coordinate))
             ++k;
         if (k == inputs_.coordinates.size()) inputs_.coordinates.push_back({state.coordinate, 0, false});
-        all.push_back({state.name, "", [k](const LawArguments& at) { return at.rates[k]; }});
+        all.push_back(
+            {state.name, "", [k](const LawArguments& at, std::span<const double>) { return at.rates[k]; }});
     }
     for (std::size_t k = 0; k < of_outputs.size(); ++k)
-        all.push_back(
-            {outputs_[k].name, "", [formula = of_outputs[k], inputs = inputs_](const LawArguments& at) {
-                 return formula(at.at.t, numbers_of(inputs, at));
-             }});
+        all.push_back({outputs_[k].name, "", number_by(of_outputs[k], inputs_)});
     return all;
 }
 
@@ -86,9 +92,33 @@ bool ControllerReader::is_same(const JointCoordinate& a, const JointCoordinate& 
            a.forms[0].body_i == b.forms[0].body_i && a.forms[0].b_j == b.forms[0].b_j;
 }
 
-void ControllerReader::add_observer(const std::string& name, const std::vector<LawReading>& told)
+void ControllerReader::add_observer(const std::string& name, const std::vector<ReactionLaw::Reading>& told)
 {
-    builder_.model().add_load(observer(name, inputs_.coordinates, told, places(builder_)));
+    builder_.model().add_load(telling(builder_, name, inputs_, told));
+}
+
+Load ControllerReader::rates_of_body(std::size_t first, const std::vector<Expression>& of_rates,
+                                     const std::vector<double>& breaks) const
+{
+    const std::vector<Matrix34> X = places(builder_);
+    std::vector<Load> units;
+    for (std::size_t k = 0; k < of_rates.size(); ++k)
+        units.push_back(unit_of_state(states_[first + k].name, bodies_[first / states_of_body],
+                                      static_cast<int>(k), states_[first + k], scale_, X));
+    const std::string name = part_name("rates of ", first), type(controller_type);
+    if (!inputs_.reactions.empty()) {
+        ReactionLaw law = reaction_law_of(of_rates, inputs_, breaks, 1.0);
+        law.name = name;
+        law.type = type;
+        law.units = std::move(units);
+        return waiting(std::move(law));
+    }
+    LoadParts parts = parts_of(of_rates, inputs_, breaks, 1.0);
+    parts.units = std::move(units);
+    // It does no work on what has mass.
+    parts.power = [](const LawArguments&) { return 0.0; };
+    parts.domain = "the rates of its states have no value there (0/0, or a root of a negative number)";
+    return modulated(name, type, parts, X);
 }
 
 void ControllerReader::make_rates(const std::vector<Expression>& of_rates,
@@ -103,20 +133,11 @@ void ControllerReader::make_rates(const std::vector<Expression>& of_rates,
         const std::size_t n = std::min(states_of_body, states_.size() - first);
         const std::vector<Expression> some(of_rates.begin() + static_cast<std::ptrdiff_t>(first),
                                            of_rates.begin() + static_cast<std::ptrdiff_t>(first + n));
-        LoadParts parts = parts_of(some, inputs_, breaks, 1.0);
-        const std::vector<Matrix34> X = places(builder_);
-        for (std::size_t k = 0; k < n; ++k)
-            parts.units.push_back(unit_of_state(states_[first + k].name, bodies_[first / states_of_body],
-                                                static_cast<int>(k), states_[first + k], scale_, X));
-        // It does no work on what has mass.
-        parts.power = [](const LawArguments&) { return 0.0; };
-        parts.domain = "the rates of its states have no value there (0/0, or a root of a negative number)";
         if (!ends_at_bends(builder_)) warn_of_kinks(builder_, section_, "states", some);
-        builder_.model().add_load(
-            modulated(part_name("rates of ", first), std::string(controller_type), parts, X));
+        builder_.model().add_load(rates_of_body(first, some, breaks));
     }
     own().load = static_cast<int>(builder_.model().loads().size());
-    const std::vector<LawReading> told = readings(of_outputs);
+    const std::vector<ReactionLaw::Reading> told = readings(of_outputs);
     add_observer("controller " + name_, told);
 }
 
@@ -137,15 +158,12 @@ void ControllerReader::make_sampling()
     if ((sampling.last - sampling.first) / sampling.every > most)
         refuse("resource-limit", "every", "a controller is asked more than a million times", "",
                "a longer period, or an earlier end of time");
-    std::vector<LawReading> next;
+    std::vector<ReactionLaw::Reading> next;
     for (std::size_t k = 0; k < states_.size(); ++k) {
         sampling.change.states.push_back(own().states[k].coordinate);
-        next.push_back(
-            {states_[k].name, "", [formula = formulas_[k], inputs = inputs_](const LawArguments& at) {
-                 return formula(at.at.t, numbers_of(inputs, at));
-             }});
+        next.push_back({states_[k].name, "", number_by(formulas_[k], inputs_)});
     }
-    std::vector<LawReading> told = readings({});
+    const std::vector<ReactionLaw::Reading> told = readings({});
     add_observer("next of " + name_, next);
     own().load = static_cast<int>(builder_.model().loads().size());
     add_observer("controller " + name_, told);

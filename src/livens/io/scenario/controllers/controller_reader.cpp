@@ -72,6 +72,7 @@ void ControllerReader::hold(const StateScale& scale)
 void ControllerReader::make()
 {
     Inputs inputs;
+    inputs.may_read_reactions = true;
     read_named_inputs(builder_, section_, inputs, path_);
     for (const ReadController::State& state : own().states) {
         if (is_output(state.name)) continue;   // what is held is none of its own formulas

@@ -61,9 +61,12 @@ private:
                    const std::vector<Expression>& of_rates) const;
 
     /// What it tells of itself: states as they are, then outputs.
-    std::vector<LawReading> readings(const std::vector<Expression>& of_outputs);
+    std::vector<ReactionLaw::Reading> readings(const std::vector<Expression>& of_outputs);
     static bool is_same(const JointCoordinate& a, const JointCoordinate& b);
-    void add_observer(const std::string& name, const std::vector<LawReading>& told);
+    void add_observer(const std::string& name, const std::vector<ReactionLaw::Reading>& told);
+    /// What n formulas from the first one on do to a body that holds states.
+    Load rates_of_body(std::size_t first, const std::vector<Expression>& of_rates,
+                       const std::vector<double>& breaks) const;
     void make_rates(const std::vector<Expression>& of_rates, const std::vector<Expression>& of_outputs);
     void make_sampling();
 

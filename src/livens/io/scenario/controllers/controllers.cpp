@@ -124,8 +124,10 @@ void take_controllers(const Builder& part, const Relocation& to, Builder& builde
         one.name = to.name(one.name);
         one.load += to.first_load;
         for (ReadController::State& state : one.states) state.coordinate = relocated(state.coordinate, to);
-        for (ReadController::Output& output : one.outputs)
+        for (ReadController::Output& output : one.outputs) {
             for (LawCoordinate& q : output.inputs.coordinates) q.coordinate = relocated(q.coordinate, to);
+            for (ReactionInput& r : output.inputs.reactions) r = relocated(r, to);
+        }
         builder.controllers().push_back(std::move(one));
     }
 }

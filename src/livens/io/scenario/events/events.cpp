@@ -79,39 +79,28 @@ EventTerms terms_of(const Builder& builder, const Section& section, const std::s
         }
     }
     Inputs inputs;
-    std::vector<std::string> reactions;
+    inputs.may_read_reactions = true;
     for (const std::string& formula : formulas)
         for (const std::string& name : names_with_points(formula)) {
             const bool is_known = std::ranges::find(inputs.symbols, name) != inputs.symbols.end() ||
-                                  inputs.formula(name) != nullptr ||
-                                  std::ranges::find(reactions, name) != reactions.end();
-            if (is_known) continue;
-            if (const std::optional<ReactionInput> input = reaction_of(builder.model(), name)) {
-                terms.reactions.push_back(*input);
-                reactions.push_back(name);
-            } else {
-                add_input(builder, inputs, name, name, path);
-            }
+                                  inputs.formula(name) != nullptr;
+            if (!is_known) add_input(builder, inputs, name, name, path);
         }
-    std::vector<std::string> symbols = inputs.symbols;
-    symbols.insert(symbols.end(), reactions.begin(), reactions.end());
     std::vector<Expression> expressions;
     ExpressionWords words = words_of_formulas(section.parameters());
     words.formula = [&](std::string_view name) { return inputs.formula(name); };
     for (const std::string& formula : formulas) {
-        expressions.emplace_back(formula, symbols, words);
+        expressions.emplace_back(formula, inputs.symbols, words);
         if (!expressions.back().guards().empty())
             refuse_condition(path, text, "a condition has formulas that are smooth",
                              "several comparisons with 'and' or 'or' between say what min, max and abs say");
     }
     terms.coordinates = inputs.coordinates;
+    terms.reactions = inputs.reactions;
     terms.n_terms = static_cast<int>(expressions.size());
-    terms.values = [expressions, reads = inputs.reads](const LawArguments& at, std::span<const double> forces,
-                                                       std::span<double> out) {
-        std::vector<double> numbers;
-        for (const Inputs::Read& read : reads)
-            numbers.push_back((read.is_rate ? at.rates : at.values)[read.coordinate]);
-        numbers.insert(numbers.end(), forces.begin(), forces.end());
+    terms.values = [expressions, inputs](const LawArguments& at, std::span<const double> reactions,
+                                         std::span<double> out) {
+        const std::vector<double> numbers = numbers_of(inputs, at, reactions);
         for (std::size_t k = 0; k < expressions.size(); ++k) out[k] = expressions[k](at.at.t, numbers);
     };
     return terms;
@@ -175,6 +164,19 @@ void add_event(Builder& builder, const Section& section, const std::string& name
 void read_times_of(Builder& builder, const Section& section, const std::string& name, EventAction action)
 {
     const std::string path = (action.joint >= 0 ? "joint[" : "load[") + name + "]";
+    const auto in_letters = [](std::string text) {
+        std::erase_if(text, [](char c) { return c == ' ' || c == '\t'; });
+        return text;
+    };
+    const std::string from = in_letters(condition_of(section, "from"));
+    if (!from.empty() && from == in_letters(condition_of(section, "until"))) {
+        builder.guard(path, [&] {
+            refuse_condition(path + ".until", condition_of(section, "until"),
+                             "'" + name + "' begins and ends by one condition",
+                             "leave out one of them, or let it end by another one");
+        });
+        return;
+    }
     for (const std::string key : {"from", "until"}) {
         const std::string text = condition_of(section, key);
         if (text.empty()) continue;
@@ -212,7 +214,8 @@ void read_changes(Builder& builder)
         builder.remember("event[" + name_of(section) + "]", section);
         builder.guard(path, [&] {
             Inputs inputs;
-            std::vector<LawReading> next;
+            inputs.may_read_reactions = true;
+            std::vector<ReactionLaw::Reading> next;
             std::vector<std::string> names;
             for (const Entry& entry : given->node->entries()) names.push_back(entry.key);
             for (const std::string& text : given->texts)
@@ -225,12 +228,9 @@ void read_changes(Builder& builder)
             for (std::size_t k = 0; k < names.size(); ++k) {
                 const std::string known = state_of(builder, names[k], path, inputs);
                 const Expression formula(given->texts[k], inputs.symbols, words);
-                next.push_back({known, "", [formula, inputs](const LawArguments& at) {
-                                    return formula(at.at.t, numbers_of(inputs, at));
-                                }});
+                next.push_back({known, "", number_by(formula, inputs)});
             }
-            builder.model().add_load(
-                observer(name_of_change(name_of(section)), inputs.coordinates, next, places(builder)));
+            builder.model().add_load(telling(builder, name_of_change(name_of(section)), inputs, next));
         });
     }
 }

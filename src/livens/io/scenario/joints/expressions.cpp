@@ -89,6 +89,11 @@ Expression taken_in(const Expression& formula, const Inputs& of, const std::stri
         places.back() = static_cast<int>(known - inputs.symbols.begin());
         if (known != inputs.symbols.end()) continue;
         inputs.symbols.push_back(name);
+        if (const int reaction = of.reads[k].reaction; reaction >= 0) {
+            inputs.reads.push_back({0, false, static_cast<int>(inputs.reactions.size())});
+            inputs.reactions.push_back(of.reactions[static_cast<std::size_t>(reaction)]);
+            continue;
+        }
         inputs.reads.push_back({inputs.coordinates.size(), of.reads[k].is_rate});
         inputs.coordinates.push_back(of.coordinates[of.reads[k].coordinate]);
     }
@@ -127,13 +132,13 @@ std::optional<ReactionInput> reaction_of(const Model& model, const std::string& 
     const std::size_t point = name.rfind('.');
     if (point == std::string::npos) return {};
     const std::string what = name.substr(point + 1);
-    ReactionInput input{model.find_joint(name.substr(0, point)), what.starts_with("torque"), -1};
+    ReactionInput input{model.find_joint(name.substr(0, point)), what.starts_with("torque")};
     const std::string rest = what.substr(input.is_torque ? 6 : std::min<std::size_t>(5, what.size()));
     const bool is_reaction = input.is_torque || what.starts_with("force");
     if (input.joint < 0 || !is_reaction) return {};
     for (int i = 0; i < 3; ++i)
-        if (rest == std::string("_") + "xyz"[i]) input.component = i;
-    if (!rest.empty() && input.component < 0) return {};
+        if (rest == std::string("_") + "xyz"[i]) input.along[i] = 1;
+    if (!rest.empty() && input.along == Vector3{}) return {};
     return input;
 }
 
@@ -143,9 +148,10 @@ void add_reaction(Inputs& inputs, const ReactionInput& reaction, const std::stri
                   const std::string& text, const std::string& path)
 {
     if (!inputs.may_read_reactions)
-        refuse_input("input-algebraic", path, symbol, text,
-                     "reactions are read by loads along joints and on bodies, and by conditions",
-                     "let a load read it, or a condition");
+        refuse_input(
+            "input-algebraic", path, symbol, text,
+            "reactions are read by loads along joints and on bodies, by controllers and by conditions",
+            "let a load read it, a controller or a condition");
     inputs.symbols.push_back(symbol);
     inputs.reads.push_back({0, false, static_cast<int>(inputs.reactions.size())});
     inputs.reactions.push_back(reaction);

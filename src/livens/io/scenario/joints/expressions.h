@@ -34,10 +34,19 @@ std::vector<double> breaks_of(const Builder& builder, const Section& section,
 void add_breaks(const Builder& builder, const std::vector<Expression>& expressions,
                 std::vector<double>& breaks);
 /// What symbols stand for.
-std::vector<double> numbers_of(const Inputs& inputs, const LawArguments& at);
+std::vector<double> numbers_of(const Inputs& inputs, const LawArguments& at,
+                               std::span<const double> reactions = {});
+/// A number that is told.
+ReactionNumber number_by(const Expression& formula, const Inputs& inputs);
 /// The law, its smoothness and what of it depends on rates, but for units.
 LoadParts parts_of(const std::vector<Expression>& expressions, const Inputs& inputs,
                    const std::vector<double>& breaks, const TimeFunction& acts);
+/// The same of formulas that read reactions; but for units and readings, too.
+ReactionLaw reaction_law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
+                            const std::vector<double>& breaks, const TimeFunction& acts);
+/// A load that does nothing but say these numbers. It looks at bodies of its inputs.
+Load telling(const Builder& builder, const std::string& name, const Inputs& inputs,
+             const std::vector<ReactionLaw::Reading>& told);
 /// A warning where they may jump or bend where no element ends.
 void warn_of_kinks(Builder& builder, const Section& section, std::string_view key,
                    const std::vector<Expression>& expressions);

@@ -2,16 +2,75 @@
 // What expressions are as laws of loads: values, slopes, bounds of these, and where they bend.
 #include <algorithm>
 
+#include "livens/dynamics/instant/reaction_laws.h"
 #include "livens/io/scenario/joints/expressions.h"
+#include "livens/multibody/controllers.h"
 
 namespace livens::inline io_internal {
 
-std::vector<double> numbers_of(const Inputs& inputs, const LawArguments& at)
+std::vector<double> numbers_of(const Inputs& inputs, const LawArguments& at,
+                               std::span<const double> reactions)
 {
     std::vector<double> numbers;
     for (const Inputs::Read& read : inputs.reads)
-        numbers.push_back((read.is_rate ? at.rates : at.values)[read.coordinate]);
+        numbers.push_back(read.reaction >= 0 ? reactions[static_cast<std::size_t>(read.reaction)]
+                                             : (read.is_rate ? at.rates : at.values)[read.coordinate]);
     return numbers;
+}
+
+ReactionNumber number_by(const Expression& formula, const Inputs& inputs)
+{
+    return [formula, inputs](const LawArguments& at, std::span<const double> reactions) {
+        return formula(at.at.t, numbers_of(inputs, at, reactions));
+    };
+}
+
+ReactionLaw reaction_law_of(const std::vector<Expression>& expressions, const Inputs& inputs,
+                            const std::vector<double>& breaks, const TimeFunction& acts)
+{
+    ReactionLaw law;
+    law.coordinates = inputs.coordinates;
+    law.reactions = inputs.reactions;
+    law.make = loads_by_reactions;
+    law.law = [expressions, inputs, breaks, acts](const LawArguments& at, std::span<const double> reactions,
+                                                  std::span<double> factors) {
+        const std::vector<double> numbers = numbers_of(inputs, at, reactions);
+        const double size = acts(at.at).value;
+        for (std::size_t k = 0; k < expressions.size(); ++k)
+            factors[k] = size == 0 ? 0 : expressions[k](beside_breaks(at.at, breaks), numbers);
+    };
+    for (const Expression& one : expressions)
+        law.guards.insert(law.guards.end(), one.guards().begin(), one.guards().end());
+    if (!law.guards.empty())
+        law.guarded = [expressions, inputs](const LawArguments& at, std::span<const double> reactions,
+                                            std::span<double> found) {
+            const std::vector<double> numbers = numbers_of(inputs, at, reactions);
+            for (const Expression& one : expressions) {
+                one.guarded(at.at.t, numbers, found);
+                found = found.subspan(one.guards().size());
+            }
+        };
+    law.breaks = breaks;
+    law.breaks.insert(law.breaks.end(), acts.breaks().begin(), acts.breaks().end());
+    std::ranges::sort(law.breaks);
+    return law;
+}
+
+Load telling(const Builder& builder, const std::string& name, const Inputs& inputs,
+             const std::vector<ReactionLaw::Reading>& told)
+{
+    if (!inputs.reactions.empty()) {
+        ReactionLaw law = reaction_law_of({}, inputs, {}, 1.0);
+        law.name = name;
+        law.type = controller_type;
+        law.readings = told;
+        return waiting(std::move(law), 0);
+    }
+    std::vector<LawReading> readings;
+    for (const ReactionLaw::Reading& one : told)
+        readings.push_back(
+            {one.name, one.unit, [value = one.value](const LawArguments& at) { return value(at, {}); }});
+    return observer(name, inputs.coordinates, readings, builder.start_configurations());
 }
 
 LoadParts parts_of(const std::vector<Expression>& expressions, const Inputs& inputs,

@@ -41,5 +41,7 @@ const std::vector<LoadKind>& load_kinds();
 
 /// Reports all it finds.
 void read_loads(Builder& builder);
+/// Loads that read reactions, once the model is whole.
+void bind_loads(Builder& builder);
 
 }   // namespace livens::inline io_internal

@@ -75,68 +75,28 @@ struct FactorName {
     std::string name, unit;
 };
 
-/// The law waits for all else that acts; the load is none yet.
-Load by_reactions(const LoadSources& p, const std::string& type, const FactorName& factor,
-                  std::vector<Load> units, const Inputs& inputs, const std::vector<Expression>& expressions)
-{
-    const bool is_part = &p.builder.top() != &p.builder.run();
-    if (is_part || !condition_of(p.section, "from").empty() || !condition_of(p.section, "until").empty())
-        throw InputError({"event-method", p.path(),
-                          is_part
-                              ? "a load of a part that is included reads a reaction, on which what is around "
-                                "it has a say"
-                              : "a load that begins or ends by a condition reads a reaction",
-                          "", "", "", is_part ? "state the load outside of the part" : "let it act always"});
-    const auto numbers = [inputs](const LawArguments& at, std::span<const double> reactions) {
-        std::vector<double> all;
-        for (const Inputs::Read& read : inputs.reads)
-            all.push_back(read.reaction >= 0 ? reactions[static_cast<std::size_t>(read.reaction)]
-                                             : (read.is_rate ? at.rates : at.values)[read.coordinate]);
-        return all;
-    };
-    ReactionLaw law{p.name, type, std::move(units), inputs.coordinates, inputs.reactions, nullptr};
-    law.breaks = breaks_of(p.builder, p.section, expressions);
-    const TimeFunction acts = while_it_acts(p.section, 1.0);
-    law.law = [expressions, numbers, breaks = law.breaks,
-               acts](const LawArguments& at, std::span<const double> reactions, std::span<double> factors) {
-        const std::vector<double> all = numbers(at, reactions);
-        for (std::size_t k = 0; k < expressions.size(); ++k)
-            factors[k] = acts(at.at).value * expressions[k](beside_breaks(at.at, breaks), all);
-    };
-    for (const Expression& one : expressions)
-        law.guards.insert(law.guards.end(), one.guards().begin(), one.guards().end());
-    if (!law.guards.empty())
-        law.guarded = [expressions, numbers](const LawArguments& at, std::span<const double> reactions,
-                                             std::span<double> found) {
-            const std::vector<double> all = numbers(at, reactions);
-            for (const Expression& one : expressions) {
-                one.guarded(at.at.t, all, found);
-                found = found.subspan(one.guards().size());
-            }
-        };
-    law.breaks.insert(law.breaks.end(), acts.breaks().begin(), acts.breaks().end());
-    std::ranges::sort(law.breaks);
-    for (std::size_t k = 0; k < law.units.size(); ++k)
-        law.readings.push_back(
-            {law.units.size() == 1 ? factor.name : std::string(1, "xyz"[k]), factor.unit, nullptr});
-    p.builder.reaction_laws().push_back(std::move(law));
-    return {};
-}
-
 /// By formulas that look at the motion: what units are multiplied by.
 Load by_formula(const LoadSources& p, const std::string& type, const FactorName& factor,
                 std::vector<Load> units, const Inputs& inputs)
 {
     const std::vector<Expression> expressions = read_expressions(p.section, inputs, p.path());
-    if (!inputs.reactions.empty())
-        return by_reactions(p, type, factor, std::move(units), inputs, expressions);
-    LoadParts parts = parts_of(expressions, inputs, breaks_of(p.builder, p.section, expressions),
-                               while_it_acts(p.section, 1.0));
-    parts.units = std::move(units);
-    for (std::size_t k = 0; k < parts.units.size(); ++k) {
-        const std::string name = parts.units.size() == 1 ? factor.name : std::string(1, "xyz"[k]);
-        parts.readings.push_back(factor_reading(name, factor.unit, parts.law, k, parts.units.size()));
+    const std::vector<double> breaks = breaks_of(p.builder, p.section, expressions);
+    const TimeFunction acts = while_it_acts(p.section, 1.0);
+    const auto name_of = [&](std::size_t k) {
+        return units.size() == 1 ? factor.name : std::string(1, "xyz"[k]);
+    };
+    if (!inputs.reactions.empty()) {
+        ReactionLaw law = reaction_law_of(expressions, inputs, breaks, acts);
+        law.name = p.name;
+        law.type = type;
+        for (std::size_t k = 0; k < units.size(); ++k) law.readings.push_back({name_of(k), factor.unit});
+        law.units = std::move(units);
+        return waiting(std::move(law));
     }
+    LoadParts parts = parts_of(expressions, inputs, breaks, acts);
+    for (std::size_t k = 0; k < units.size(); ++k)
+        parts.readings.push_back(factor_reading(name_of(k), factor.unit, parts.law, k, units.size()));
+    parts.units = std::move(units);
     if (!ends_at_bends(p.builder)) warn_of_kinks(p.builder, p.section, "expression", expressions);
     return modulated(p.name, type, parts, places(p.builder));
 }

@@ -4,6 +4,7 @@
 // complaints, results and sensors.
 #include <cmath>
 
+#include "livens/dynamics/instant/reaction_laws.h"
 #include "livens/io/scenario/joints/joints.h"
 #include "livens/io/scenario/loads/load_makers.h"
 
@@ -78,9 +79,7 @@ void read_load(Builder& builder, const Section& load, const std::string& name, b
         return;
     if (!is_good || !over) return;
     builder.guard(path, [&] {
-        const std::size_t n_waiting = builder.reaction_laws().size();
         Load made = kind.make({load, name, first.index, second.index, builder, *over});
-        if (builder.reaction_laws().size() > n_waiting) return;
         made.is_begun_by_event = !condition_of(load, "from").empty();
         made.is_ended_by_event = !condition_of(load, "until").empty();
         if (made.is_decided_by_events()) {
@@ -106,14 +105,16 @@ Table load_table()
 
 namespace {
 
-/// What is no number at the start would end the motion before it begins.
-void check_start(Builder& builder)
+/// What is no number at the start would end the motion before it begins. Those that wait for the whole are
+/// asked where it is there.
+void check_start(Builder& builder, bool of_whole = false)
 {
     const Section *start = only_section(builder.run(), "start"), *time = only_section(builder.run(), "time");
     if (start != nullptr && start->text("initial") == "project") return;   // from another place
     const Model& model = builder.model();
     const State state = model.start();
     for (const Load& load : model.loads()) {
+        if ((load.by_reactions != nullptr) != of_whole) continue;
         const Instant at{time == nullptr ? 0 : time->number("start"), Side::right};
         LoadForces F(load.n_acted);
         // The right side of the instant: a load that begins at the start acts from there on.
@@ -151,12 +152,19 @@ void read_loads(Builder& builder)
         }
     for (std::size_t i = 0; i < sections.size(); ++i) read_load(builder, sections[i], names[i], is_good[i]);
     read_joint_loads(builder);
-    if (!builder.reaction_laws().empty() && builder.findings().n_errors() == 0)
-        builder.guard("load[" + builder.reaction_laws()[0].name + "]", [&] {
-            for (Load& load : loads_by_reactions(builder.model(), builder.reaction_laws()))
-                builder.model().add_load(std::move(load));
-        });
     check_start(builder);
+}
+
+void bind_loads(Builder& builder)
+{
+    const Model& model = builder.model();
+    if (!reads_reactions(model) || builder.findings().n_errors() > 0) return;
+    const Section* time = only_section(builder.run(), "time");
+    const bool is_good = builder.guard("load", [&] {
+        bind_reaction_laws(builder.model());
+        check_reaction_laws(model, time == nullptr ? 0 : time->number("start"));
+    });
+    if (is_good) check_start(builder, true);
 }
 
 }   // namespace livens::inline io_internal
