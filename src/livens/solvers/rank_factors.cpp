@@ -21,9 +21,9 @@ struct RankFactors::Parts {
 namespace {
 
 /// Row by row, columns ascending: those of A, then those behind.
-void store(const SparseMatrix& A, const std::vector<OutsideEntry>& outside, StoredRows& rows)
+void store(const SparseMatrix& A, const std::vector<OutsideEntry>& outside, int n_rows, StoredRows& rows)
 {
-    rows.starts.assign(static_cast<std::size_t>(A.size) + 1, 0);
+    rows.starts.assign(static_cast<std::size_t>(n_rows) + 1, 0);
     for (const int row : A.rows) ++rows.starts[row + 1];
     for (const OutsideEntry& entry : outside) ++rows.starts[entry.row + 1];
     std::partial_sum(rows.starts.begin(), rows.starts.end(), rows.starts.begin());
@@ -50,15 +50,10 @@ bool RankFactors::factorise(const SparseMatrix& A, const std::vector<OutsideEntr
 {
     Parts& p = *parts_;
     p.places = places;
-    store(A, outside, p.rows);
-    std::vector<char> is_shared(static_cast<std::size_t>(n_columns), 0);
-    for (const int column : places.columns) is_shared[column] = 1;
-    std::vector<int> own, work(static_cast<std::size_t>(n_columns));
-    for (int c = 0; c < places.n_own; ++c)
-        if (is_shared[c] == 0) own.push_back(c);
-    if (places.from_end) std::ranges::reverse(own);
-    p.stretch.analyse(p.rows, {0, places.n_rows}, std::move(own), places.columns, work);
-    p.y.assign(static_cast<std::size_t>(A.size), 0.0);
+    store(A, outside, places.n_rows, p.rows);
+    std::vector<int> work(static_cast<std::size_t>(n_columns));
+    p.stretch.analyse(p.rows, {0, places.n_rows}, places.own, places.columns, work);
+    p.y.assign(static_cast<std::size_t>(places.n_rows), 0.0);
     const bool is_done = ranks_.all(p.stretch.eliminate(p.rows));
     if (!is_done || places.n_unknowns == 0) return is_done;
     if (!p.chain) p.chain = ranks_.make_chain();

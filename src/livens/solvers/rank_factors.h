@@ -11,19 +11,19 @@
 
 namespace livens::inline solvers_internal {
 
-/// An entry beside those of a rank's own matrix.
+/// An entry beside those of a rank's own matrix; those of a row in the order of their columns.
 struct OutsideEntry {
-    int row, column;   ///< of the rank; columns behind those of its matrix
+    int row, column;   ///< of the rank: columns behind those of its matrix, or rows behind all of its rows
     double value;
 };
 
-/// Which of a rank's columns are unknowns of the chain, too.
+/// Which of a rank's columns are its own, and which are unknowns of the chain, too.
 struct ChainPlaces {
-    int n_rows = 0, n_own = 0;   ///< of the rank's matrix; what comes behind is empty
+    int n_rows = 0;              ///< of the rank: of its matrix, without empty ones, and those behind
+    std::vector<int> own;        ///< columns that no other rank sees, in the order of their elimination
+    std::vector<int> columns;    ///< of the rank, the others
+    std::vector<int> unknowns;   ///< of the chain, ascending: what these are
     int n_unknowns = 0;          ///< of the chain
-    std::vector<int> columns;    ///< of the rank
-    std::vector<int> unknowns;   ///< of the chain, ascending
-    bool from_end = false;       ///< its own columns are eliminated from the end of time
 };
 
 /// Every rank eliminates the columns that it alone sees by its own rows, and what is left of these makes a

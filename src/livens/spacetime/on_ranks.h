@@ -15,10 +15,11 @@ struct RankWork {
     int n_chain = 0;           ///< unknowns of the chain
     long long flops = 0;       ///< of a factorisation of its own rows
     Traffic of_solution;       ///< that it sent while the motion was solved
+    TimeMesh mesh{};           ///< of all ranks, as unknown numbers make it
 };
 
 /// Throws InputError `ranks-method`, `ranks-conditions` or `ranks-elements` for what is not solved on ranks:
-/// the elements of the family mixed on Lagrange's basis are, all at once, from a state or between two halves.
+/// the elements of the family mixed on Lagrange's basis are, all at once, under any conditions.
 void check_ranks(const Model& model, const Problem& problem, const Time& time, const Method& method,
                  const SolveOptions& options, int n_ranks);
 
