@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "livens/solvers/detail/stretch.h"
+#include "livens/solvers/rank_borders.h"
 
 namespace livens::inline solvers_internal {
 
@@ -14,8 +15,10 @@ struct RankFactors::Parts {
     StoredRows rows;
     Stretch stretch;
     ChainPlaces places;
-    std::unique_ptr<RankChain> chain;
+    RankBorders borders;
     std::vector<double> y, missed, correction, left, joined;
+
+    explicit Parts(Ranks& ranks) : borders(ranks) {}
 };
 
 namespace {
@@ -42,7 +45,7 @@ void store(const SparseMatrix& A, const std::vector<OutsideEntry>& outside, int 
 
 }   // namespace
 
-RankFactors::RankFactors(Ranks& ranks) : ranks_(ranks), parts_(std::make_unique<Parts>()) {}
+RankFactors::RankFactors(Ranks& ranks) : ranks_(ranks), parts_(std::make_unique<Parts>(ranks)) {}
 RankFactors::~RankFactors() = default;
 
 bool RankFactors::factorise(const SparseMatrix& A, const std::vector<OutsideEntry>& outside, int n_columns,
@@ -54,12 +57,11 @@ bool RankFactors::factorise(const SparseMatrix& A, const std::vector<OutsideEntr
     std::vector<int> work(static_cast<std::size_t>(n_columns));
     p.stretch.analyse(p.rows, {0, places.n_rows}, places.own, places.columns, work);
     p.y.assign(static_cast<std::size_t>(places.n_rows), 0.0);
-    const bool is_done = ranks_.all(p.stretch.eliminate(p.rows));
-    if (!is_done || places.n_unknowns == 0) return is_done;
-    if (!p.chain) p.chain = ranks_.make_chain();
+    if (!ranks_.all(p.stretch.eliminate(p.rows))) return false;
     p.left.resize(p.stretch.left().size());
     p.joined.resize(places.columns.size());
-    return p.chain->factorise({places.n_unknowns, places.unknowns, p.stretch.left_values()});
+    return p.borders.factorise({static_cast<int>(p.left.size()), places.n_before, places.n_behind,
+                                places.of_all, places.n_of_all, p.stretch.left_values()});
 }
 
 void RankFactors::apply_inverse(std::span<const double> b, std::span<double> x)
@@ -67,11 +69,9 @@ void RankFactors::apply_inverse(std::span<const double> b, std::span<double> x)
     Parts& p = *parts_;
     std::ranges::copy(b, p.y.begin());
     p.stretch.forward(p.y.data());
-    if (p.places.n_unknowns > 0) {
-        for (std::size_t i = 0; i < p.left.size(); ++i) p.left[i] = p.y[p.stretch.left()[i]];
-        p.chain->solve(p.left, p.joined);
-        for (std::size_t i = 0; i < p.joined.size(); ++i) x[p.places.columns[i]] = p.joined[i];
-    }
+    for (std::size_t i = 0; i < p.left.size(); ++i) p.left[i] = p.y[p.stretch.left()[i]];
+    p.borders.solve(p.left, p.joined);
+    for (std::size_t i = 0; i < p.joined.size(); ++i) x[p.places.columns[i]] = p.joined[i];
     p.stretch.backward(p.y.data(), x.data());
 }
 
@@ -91,5 +91,7 @@ void RankFactors::solve(std::span<const double> b, std::span<double> x)
 long long RankFactors::entries() const { return parts_->stretch.n_entries(); }
 long long RankFactors::flops() const { return parts_->stretch.flops(); }
 int RankFactors::n_left() const { return static_cast<int>(parts_->stretch.left().size()); }
+int RankFactors::n_in_chain() const { return parts_->borders.n_rows(); }
+int RankFactors::n_chain() const { return parts_->borders.n_unknowns(); }
 
 }   // namespace livens::inline solvers_internal

@@ -143,7 +143,8 @@ void take_work(const MixedWindow& window, const Traffic& before, Ranks& ranks, S
             window.elements().second,
             block->equations().n_formed(),
             block->factors().n_left(),
-            block->n_chain(),
+            block->factors().n_in_chain(),
+            block->factors().n_chain(),
             block->factors().flops(),
             {ranks.traffic().messages - before.messages, ranks.traffic().bytes - before.bytes}};
     std::array<double, 2> sums{static_cast<double>(block->n_own()),

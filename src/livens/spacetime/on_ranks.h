@@ -11,7 +11,8 @@ namespace [[gnu::visibility("default")]] livens {
 struct RankWork {
     int first = 0, last = 0;   ///< its elements are first..last - 1
     int n_formed = 0;          ///< elements that it evaluates in a residual
-    int n_left = 0;            ///< rows that it has in the chain
+    int n_left = 0;            ///< rows that it has left of its own
+    int n_in_chain = 0;        ///< rows of these in the chain
     int n_chain = 0;           ///< unknowns of the chain
     long long flops = 0;       ///< of a factorisation of its own rows
     Traffic of_solution;       ///< that it sent while the motion was solved

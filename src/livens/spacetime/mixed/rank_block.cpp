@@ -18,18 +18,15 @@ RankBlock::RankBlock(Equations equations, Ranks& ranks, Border* border)
         Side& one = sides_[at_end ? 1 : 0];
         one = side(at_end);
         const int numbers = static_cast<int>(one.columns.size());
-        const int border_number = ranks.rank() - (at_end ? 0 : 1),
-                  first = n + (at_end ? static_cast<int>(sides_[0].rows.size()) : 0);
+        const int first = n + (at_end ? static_cast<int>(sides_[0].rows.size()) : 0);
         for (int i = 0; i < numbers; ++i) {
             places_.columns.push_back(one.columns[i]);
-            places_.unknowns.push_back(2 * numbers * border_number + i);
         }
         for (int i = 0; i < numbers; ++i) {
             places_.columns.push_back(first + i);
-            places_.unknowns.push_back(2 * numbers * border_number + numbers + i);
             outside_.push_back({one.rows[i], first + i, one.sign});
         }
-        places_.n_unknowns = 2 * numbers * (ranks.size() - 1);
+        (at_end ? places_.n_behind : places_.n_before) = 2 * numbers;
     }
     places_.n_rows = n_equations_ = equations_.space().numbering.n_equations();
     n_columns_ = n + n_transfers();
@@ -39,7 +36,7 @@ RankBlock::RankBlock(Equations equations, Ranks& ranks, Border* border)
     transfers_[1] = transfers_[0];
 }
 
-/// Unknowns of the chain are those at borders of ranks, what joins the rows of conditions, and numbers.
+/// Beside unknowns at borders of ranks there are those that join the rows of conditions, and numbers.
 void RankBlock::place_border()
 {
     const int f = border_->n_free(), m = border_->size();
@@ -54,10 +51,10 @@ void RankBlock::place_border()
                 rows[i] = places_.n_rows++;
     }
     const auto join = [&](bool is_here) {
-        const int unknown = places_.n_unknowns++;
+        const int number = places_.n_of_all++;
         if (!is_here) return -1;
         places_.columns.push_back(n_columns_);
-        places_.unknowns.push_back(unknown);
+        places_.of_all.push_back(number);
         return n_columns_++;
     };
     own_.between.assign(static_cast<std::size_t>(m), -1);

@@ -55,7 +55,6 @@ public:
     const RankFactors& factors() const { return of_rank_; }
     /// Unknowns of the rank that are not those of the one before; of the first one those of the border, too.
     int n_own() const;
-    int n_chain() const { return places_.n_unknowns; }
 
 private:
     /// Numbers at a border of two ranks, in one order in both.
