@@ -179,6 +179,15 @@ int solve_together(const Read& one, const SolveArguments& arguments, const Commo
     });
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     const int signal = static_cast<int>(ranks.largest(static_cast<double>(InterruptWatch::signal())));
+    if (part.cannot_begin) {   // all know it, and one says it
+        double code = exit_internal;
+        if (ranks.is_first())
+            code = guarded(common, [&]() -> int {
+                return in_file_of(scenario, [&]() -> int { throw InputError(*part.cannot_begin); });
+            });
+        ranks.broadcast(0, {&code, 1});
+        return static_cast<int>(code);
+    }
     if (part.motion.mesh.ends.empty()) {   // nothing may replace an older result
         const int code = signal != 0 ? exit_signal + signal : exit_not_converged;
         if (ranks.is_first()) say_error(part.report.message + "; nothing is written");

@@ -281,7 +281,6 @@ Solution solve_on_ranks(const Model& model, const Problem& stated, const Time& t
     const Problem problem = with_prepared(stated);
     TimeMesh mesh = std::get<TimeMesh>(time);
     Solution solution = solve_parts(model, problem, mesh, method, options, ranks, work);
-    if (solution.cannot_begin) throw InputError(std::move(*solution.cannot_begin));
     SolveReport& report = solution.report;
     if (solution.motion.mesh.ends.empty()) return solution;
     const Model& found = found_model(model, solution);

@@ -26,7 +26,8 @@ void check_ranks(const Model& model, const Problem& problem, const Time& time, c
 
 /// solve() by all ranks, each with its part of the elements; called by all of them with the same arguments.
 /// Returns this rank's part of the motion; report and verdict are those of the whole, but for the series,
-/// which go on from those of the ranks before. No second solution tells an error.
+/// which go on from those of the ranks before. No second solution tells an error. An unknown number that no
+/// condition depends on is told as Solution::cannot_begin, by all ranks.
 Solution solve_on_ranks(const Model& model, const Problem& problem, const Time& time, const Method& method,
                         const SolveOptions& options, Ranks& ranks, RankWork& work);
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "livens/base/error.h"
 #include "livens/io/parts.h"
 #include "livens/io/solve_scenario.h"
 #include "livens/spacetime/on_ranks.h"
@@ -302,6 +303,25 @@ TEST(RanksBorder, WhatIsSentGrowsAsIsSaid)
         EXPECT_EQ(bytes[i] - bytes[i - 1], bytes[2] - bytes[1]);
     }
     EXPECT_LT(8 * bytes.back(), 9 * bytes[2]);
+}
+
+TEST(RanksBorder, WhatIsNotLookedForIsRefused)
+{
+    const auto code = [](const std::string& text, int roots) {
+        const Scenario s = scenario_of(text);
+        SolveOptions options = s.options;
+        options.roots = roots;
+        try {
+            check_ranks(s.model, problem_of(s), s.time, s.method, options, 2);
+        } catch (const InputError& why) {
+            return std::string(why.complaint().code);
+        }
+        return std::string();
+    };
+    EXPECT_EQ(code(between_angles(20), 3), "ranks-conditions");
+    EXPECT_EQ(code(between_angles(20), 1), "") << "negative control";
+    EXPECT_EQ(code(replaced(between_angles(20), "family = \"mixed\"", "family = \"lobatto\""), 1),
+              "ranks-method");
 }
 
 /// A periodic motion with a number joins both ends of time: as many unknowns of the chain more as there are
