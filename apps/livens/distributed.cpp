@@ -172,31 +172,43 @@ int solve_together(const Read& one, const SolveArguments& arguments, const Commo
     options.progress = [](const Progress&) { return InterruptWatch::signal() == 0; };
     const Clock::time_point begin = Clock::now();
     Problem problem{scenario.conditions, {}, nullptr, scenario.prepared};
+    problem.unknowns = scenario.unknowns;
     RankWork work;
     Solution part = in_file_of(scenario, [&] {
         return solve_on_ranks(scenario.model, problem, scenario.time, scenario.method, options, ranks, work);
     });
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     const int signal = static_cast<int>(ranks.largest(static_cast<double>(InterruptWatch::signal())));
+    if (part.cannot_begin) {   // all know it, and one says it
+        double code = exit_internal;
+        if (ranks.is_first())
+            code = guarded(common, [&]() -> int {
+                return in_file_of(scenario, [&]() -> int { throw InputError(*part.cannot_begin); });
+            });
+        ranks.broadcast(0, {&code, 1});
+        return static_cast<int>(code);
+    }
     if (part.motion.mesh.ends.empty()) {   // nothing may replace an older result
         const int code = signal != 0 ? exit_signal + signal : exit_not_converged;
         if (ranks.is_first()) say_error(part.report.message + "; nothing is written");
         return code;
     }
-    const Run run = part_of_run(scenario, std::move(part));
+    std::shared_ptr<const Scenario> found;   // of unknown numbers
+    if (part.numbers.rebuilt.model != nullptr) found = with_guesses(scenario, part.numbers.values);
+    const Scenario& now = found != nullptr ? *found : scenario;
+    const Run run = part_of_run(now, std::move(part), work);
     {
         const SignalPause pause;
-        write_parts(one.output, scenario, run, ranks, !arguments.force);
+        write_parts(one.output, now, run, ranks, !arguments.force);
     }
     const std::string words = work_in_words(work, ranks);
     const int code = signal != 0 ? exit_signal + signal : run.report.converged() ? exit_ok : exit_suspect;
     if (!ranks.is_first()) return code;
     if (code != exit_ok) say_error(run.report.message);
-    const TimeMesh& mesh = std::get<TimeMesh>(scenario.time);
     if (common.json)
         print(json_of(run, one.output.string(), words, code));
     else if (!common.quiet)
-        print(summary_of(run, mesh, one.output.string(), words, seconds));
+        print(summary_of(run, work.mesh, one.output.string(), words, seconds));
     return code;
 }
 

@@ -1814,8 +1814,8 @@ livens_mutant(NAME rotation_vectors_without_end
 # Elements of the paper: momenta at the start push into the law with the sign of those at the end.
 livens_mutant(NAME momenta_of_a_border_all_leave
               FILE spacetime/mixed/border.cpp
-              OLD [[(at_end ? P.a[c] : -P.a[c])]]
-              NEW [[(at_end ? P.a[c] : P.a[c])]]
+              OLD [[at_end ? P.a[c] : -P.a[c])]]
+              NEW [[at_end ? P.a[c] : P.a[c])]]
               TESTS_OF unit_io
               MUST_FAIL MixedComponents.ConvergeToTheMotionThatTheConditionsHave)
 
@@ -1979,6 +1979,22 @@ livens_mutant(NAME transfer_sign
               NEW [[+= std::abs(sign) * transfers_]]
               TESTS_OF unit_spacetime
               MUST_FAIL OnRanks.StatesAreThoseOfTheSerialRun)
+
+# What is alike at both ends of time is not handed on from the first rank to the last one.
+livens_mutant(NAME conditions_of_one_rank
+              FILE spacetime/mixed/rank_block.cpp
+              OLD [[own_.between[i], -1}]]
+              NEW [[own_.between[i], 1}]]
+              TESTS_OF unit_io
+              MUST_FAIL RanksBorder.PeriodicMotionsAreThoseOfTheSerialRun)
+
+# Every rank counts its turns from where the first one begins.
+livens_mutant(NAME turns_of_each_rank
+              FILE spacetime/mixed/border.cpp
+              OLD [[if (e == 0 && s == 0 && !has(false)) begin = angle.now();]]
+              NEW [[if (e == 0 && s == 0 && !has(false)) begin = from;]]
+              TESTS_OF unit_io
+              MUST_FAIL RanksBorder.ConditionsByComponentAreThoseOfTheSerialRun)
 
 # States by the mass of what holds them.
 livens_mutant(NAME states_with_mass

@@ -2,6 +2,7 @@
 """One motion by several processes of mpirun, oversubscribed, against the serial run; and what ends them.
 LIVENS_PETSC_PROGRAM is a program that was built with PETSc; without it only what is refused is looked at."""
 import json
+import math
 import os
 import pathlib
 import signal
@@ -55,13 +56,41 @@ estimate = "none"
 """
 
 
-def scenario(end=1, elements=80, degree=1, more=""):
-    return LINKS.format(upper="", lower="", end=end, elements=elements, degree=degree, more=more)
+def scenario(end=1, elements=80, degree=1, more="", upper="", lower=""):
+    return LINKS.format(upper=upper, lower=lower, end=end, elements=elements, degree=degree, more=more)
 
 
-def between(known_at_end):
-    """From places to places or momenta that the first motion has come to."""
-    return scenario(0.5, 41, 2, "") + known_at_end
+def between(at_start, at_end):
+    """Between positions or momenta: both links are turned by 0.5 rad about the pivot at the end, and turn."""
+    turned = [f"[body.end]\nposition = [{-x * math.sin(0.5)}, 0, {-x * math.cos(0.5)}]\nrotation_vector = [0, 0.5, 0]\n"
+              f"angular_velocity = [0, 3, 0]\nvelocity = [{-3 * x * math.cos(0.5)}, 0, {3 * x * math.sin(0.5)}]\n"
+              for x in (0.5, 1.5)]
+    given = f'[start]\ngiven = "{at_start}"\n[end]\ngiven = "{at_end}"\n'
+    return scenario(0.2, 41, 2, given, *turned).replace("rate = -3\n", "")
+
+
+def by_component(known, elements=41, degree=2, end="0.4", damping="0.3", periodic=""):
+    """The same links with a damper, and what `known` says of them in place of their rates."""
+    text = scenario(end, f"{elements}\n{periodic}", degree,
+                    f'[[load]]\ntype = "spring"\nname = "friction"\njoint = "elbow"\nstiffness = 3\ndamping = {damping}\n'
+                    + known)
+    return text.replace("rate = 4\n", "").replace("rate = -3\n", "")
+
+
+START = '[start.known]\n"pivot.angle" = 0.1\n"elbow.angle" = -0.2\n"elbow.angle_rate" = 0.5\n'
+BORDERS = {
+    "between places": between("positions", "positions"),
+    "places, then momenta": between("positions", "momenta"),
+    "by component": by_component(START + '[end.known]\n"pivot.angle" = 0.4\n'),
+    "linear, by component": by_component(START + '[end.known]\n"pivot.angle" = 0.4\n', 80, 1),
+    "an unknown damping": by_component(START + '"pivot.angle_rate" = 0\n[end.known]\n"elbow.angle" = 0.1\n',
+                                       damping="{ unknown = 0.2, low = 0 }"),
+    "an unknown duration": by_component(START + '"pivot.angle_rate" = 0\n[end.known]\n"elbow.angle" = 0.1\n',
+                                        end="{ unknown = 0.5, low = 0.1, high = 1 }"),
+    "periodic": by_component('[[load]]\ntype = "actuator"\nname = "motor"\njoint = "pivot"\nexpression = "3*cos(2*pi*t)"\n'
+                             '[[load]]\ntype = "spring"\nname = "bearing"\njoint = "pivot"\nstiffness = 0\ndamping = 1\n',
+                             60, end="1", periodic="periodic = true"),
+}
 
 
 class Distributed(unittest.TestCase):
@@ -112,6 +141,24 @@ class ByMpirun(Distributed):
                 read = subprocess.run([PROGRAM, "info", f"ranks{n}.nc"], cwd=self.folder, capture_output=True, text=True)
                 self.assertEqual(read.returncode, 0, read.stderr)   # which verifies checksums
 
+    def test_conditions_at_both_ends_are_met_as_by_one(self):
+        for case, text in BORDERS.items():
+            name = self.write(text)
+            self.serial(name, "serial.nc")
+            for n in (1, 2, 3, 4):
+                self.assertEqual(self.ranks(n, name, "-q", "-o", f"ranks{n}.nc").returncode, 0)
+                self.assert_same("serial.nc", f"ranks{n}.nc", f"{case}, {n} ranks")
+                read = subprocess.run([PROGRAM, "info", f"ranks{n}.nc"], cwd=self.folder, capture_output=True, text=True)
+                self.assertEqual(read.returncode, 0, read.stderr)   # which verifies checksums
+
+    def test_what_is_found_stands_in_the_file(self):
+        name = self.write(BORDERS["an unknown damping"])
+        self.serial(name, "serial.nc")
+        self.ranks(3, name, "-q", "-o", "ranks.nc")
+        found = [json.loads(subprocess.run([PROGRAM, "info", file, "--json"], cwd=self.folder, capture_output=True,
+                                           text=True, check=True).stdout) for file in ("serial.nc", "ranks.nc")]
+        self.assertEqual(*(next(note for note in one["notes"] if note.startswith("found: "))[:24] for one in found))
+
     def test_what_is_sent_is_counted(self):
         name = self.write(scenario(1, 240))
         said = {n: json.loads(self.ranks(n, name, "--json").stdout)["distributed"] for n in (2, 4)}
@@ -119,6 +166,12 @@ class ByMpirun(Distributed):
         self.assertIn("has 70 of 240 elements", said[4])
 
     def test_memory_of_a_rank_falls(self):
+        known = START + '[end.known]\n"pivot.angle" = 0.4\n'
+        for case, small, large in (("from a state", scenario(0.02, 8), scenario(4, 6000)),
+                                   ("a border", by_component(known, 8, 1), by_component(known, 6000, 1))):
+            self.measure_memory(case, small, large)
+
+    def measure_memory(self, case, small, large):
         wrapper = self.folder / "peak.py"
         wrapper.write_text("import os, sys, resource, subprocess\n"
                            "done = subprocess.run(sys.argv[2:])\n"
@@ -130,9 +183,10 @@ class ByMpirun(Distributed):
             self.ranks(n, name, "-q", "-o", "peak.nc", program=(sys.executable, str(wrapper), "peak", PROGRAM))
             return max(int((self.folder / f"peak{rank}").read_text()) for rank in range(n))
 
-        small, large = self.write(scenario(0.02, 8), "small.toml"), self.write(scenario(4, 6000), "large.toml")
-        alone, four = peak(1, large) - peak(1, small), peak(4, large) - peak(4, small)
-        print(f"memory above an empty run: {alone / 1024:.0f} MiB alone, {four / 1024:.0f} MiB a rank of four")
+        small, large = self.write(small, "small.toml"), self.write(large, "large.toml")
+        alone = peak(1, large) - peak(1, small)
+        four = peak(4, large) - peak(4, small)
+        print(f"memory above an empty run, {case}: {alone / 1024:.0f} MiB alone, {four / 1024:.0f} MiB a rank of four")
         self.assertLess(four, 0.35 * alone)
 
     def children(self, program):
@@ -147,7 +201,13 @@ class ByMpirun(Distributed):
         return found
 
     def test_a_killed_rank_ends_all(self):
-        name = self.write(scenario(8, 20000), "large.toml")
+        self.kill_one_of(scenario(8, 20000))
+
+    def test_a_killed_rank_ends_a_border(self):
+        self.kill_one_of(by_component(START + '[end.known]\n"pivot.angle" = 0.4\n', 20000, 1))
+
+    def kill_one_of(self, text):
+        name = self.write(text, "large.toml")
         with subprocess.Popen(["mpirun", "-n", "3", PROGRAM, "solve", name, "--distributed", "-q", "-o", "killed.nc"],
                               cwd=self.folder, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as job:
             until = time.monotonic() + 60
@@ -168,6 +228,38 @@ class ByMpirun(Distributed):
             self.assertEqual(done.returncode, 3, done.stderr)
             self.assertEqual(done.stderr.count(f"error[{code}]"), 1, done.stderr)
             self.assertFalse((self.folder / "none.nc").exists())
+
+    def test_a_number_that_nothing_shows_is_refused_once(self):
+        # the mass of a link that nothing but its weight moves
+        text = """format = 1
+gravity = [0, 0, -9.81]
+[[body]]
+name = "link"
+shape = { box = [0.1, 0.1, 1] }
+mass = { unknown = 2, low = 1, high = 3 }
+position = [0, 0, -0.5]
+[[joint]]
+name = "pivot"
+type = "revolute"
+between = ["world", "link"]
+at = [0, 0, 0]
+axis = [0, 1, 0]
+[start.known]
+"pivot.angle" = 0.3
+"pivot.angle_rate" = 0
+[end.known]
+"pivot.angle" = 0.5
+[time]
+end = 0.4
+elements = 40
+[method]
+family = "mixed"
+degree = 2
+"""
+        done = self.ranks(3, self.write(text), "-o", "none.nc", check=False)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertEqual(done.stderr.count("error[unknown-unseen]"), 1, done.stderr)
+        self.assertFalse((self.folder / "none.nc").exists())
 
     def test_a_place_that_is_taken_stays(self):
         (self.folder / "taken.nc").write_text("somebody's")

@@ -40,6 +40,6 @@ if(LIVENS_BUILD_PROGRAM)
         set(livens_has_petsc 1)
     endif()
     add_test(NAME distributed COMMAND ${livens_python} -B ${CMAKE_CURRENT_SOURCE_DIR}/system/distributed_test.py)
-    set_tests_properties(distributed PROPERTIES LABELS "fast;motions" TIMEOUT 600 SKIP_REGULAR_EXPRESSION "SKIPPED: distributed"
+    set_tests_properties(distributed PROPERTIES LABELS "fast;motions" TIMEOUT 1200 SKIP_REGULAR_EXPRESSION "SKIPPED: distributed"
         ENVIRONMENT "LIVENS_PROGRAM=$<TARGET_FILE:livens>;LIVENS_HAS_PETSC=${livens_has_petsc}")
 endif()

@@ -35,23 +35,6 @@ void take_found(std::shared_ptr<const Scenario> found, SolvedScenario& solved)
     solved.found = std::move(found);
 }
 
-/// "found: length = 1.113745597915 m, within 3e-12"; or what the last iterate had.
-void tell_found(SolvedScenario& solved)
-{
-    Solution& solution = solved.solution;
-    const std::vector<UnknownNumber>& all = solved.found->unknowns.numbers;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const SolveReport& report = solution.report;
-        const bool is_found = report.reached_end() || report.status == SolveStatus::inaccurate;
-        std::string text = (is_found ? "found: " : "not found, and in the last iterate: ") + all[i].name +
-                           " = " + to_text(all[i].guess, 15);
-        if (!all[i].unit.empty()) text += " " + all[i].unit;
-        if (is_found && i < solution.numbers.errors.size())
-            text += ", within " + to_text(solution.numbers.errors[i], 2);
-        solution.report.notes.push_back(std::move(text));
-    }
-}
-
 /// With which bodies meet: that of the coordinate that the stop is of.
 const char* unit_of_speed(const Event& event)
 {
@@ -83,6 +66,33 @@ void tell_events(const Model& model, Solution& solution)
 }
 
 }   // namespace
+
+void tell_found(const UnknownNumbers& found, Solution& solution)
+{
+    const std::vector<UnknownNumber>& all = found.numbers;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const SolveReport& report = solution.report;
+        const bool is_found = report.reached_end() || report.status == SolveStatus::inaccurate;
+        std::string text = (is_found ? "found: " : "not found, and in the last iterate: ") + all[i].name +
+                           " = " + to_text(all[i].guess, 15);
+        if (!all[i].unit.empty()) text += " " + all[i].unit;
+        if (is_found && i < solution.numbers.errors.size())
+            text += ", within " + to_text(solution.numbers.errors[i], 2);
+        solution.report.notes.push_back(std::move(text));
+    }
+}
+
+RunNumbers numbers_of(const UnknownNumbers& found, std::vector<double> errors)
+{
+    RunNumbers all;
+    for (const UnknownNumber& one : found.numbers) {
+        all.names.push_back(one.name);
+        all.values.push_back(one.guess);
+    }
+    all.errors = std::move(errors);
+    all.errors.resize(all.names.size(), std::nan(""));
+    return all;
+}
 
 void take_events(const Run& run, Scenario& scenario)
 {
@@ -121,7 +131,7 @@ SolvedScenario solve_scenario(const Scenario& scenario, SolveOptions options,
     estimate(now.model, solved.problem, now.method, options, solved.solution);
     for (Solution& root : solved.solution.roots)
         estimate(now.model, solved.problem, now.method, options, root);
-    if (solved.found != nullptr) tell_found(solved);
+    if (solved.found != nullptr) tell_found(solved.found->unknowns, solved.solution);
     tell_events(now.model, solved.solution);
     return solved;
 }
@@ -188,18 +198,6 @@ RunEvents events_of(const Model& model, const std::vector<SolvedEvent>& events)
         all.speeds.push_back(one.speed);
         all.rests.push_back(one.rests_at);
     }
-    return all;
-}
-
-RunNumbers numbers_of(const UnknownNumbers& found, std::vector<double> errors)
-{
-    RunNumbers all;
-    for (const UnknownNumber& one : found.numbers) {
-        all.names.push_back(one.name);
-        all.values.push_back(one.guess);
-    }
-    all.errors = std::move(errors);
-    all.errors.resize(all.names.size(), std::nan(""));
     return all;
 }
 

@@ -30,6 +30,12 @@ SolvedScenario solve_scenario(const Scenario& scenario, SolveOptions options,
 /// judge(), and the run with all that the scenario says of it. `goes_on`: see judge().
 Run judged_run(const Scenario& scenario, SolvedScenario&& solved, const std::function<bool()>& goes_on);
 
+/// Notes of unknown numbers, with what was found as their guesses: "found: length = 1.113745597915 m, within
+/// 3e-12"; or what the last iterate had.
+void tell_found(const UnknownNumbers& found, Solution& solution);
+/// Errors that are not known are nan.
+RunNumbers numbers_of(const UnknownNumbers& found, std::vector<double> errors);
+
 /// The scenario that was read from a run's file, with joints and loads as its motion decided. Throws IoError.
 void take_events(const Run& run, Scenario& scenario);
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "livens/solvers/detail/stretch.h"
+#include "livens/solvers/rank_borders.h"
 
 namespace livens::inline solvers_internal {
 
@@ -14,16 +15,18 @@ struct RankFactors::Parts {
     StoredRows rows;
     Stretch stretch;
     ChainPlaces places;
-    std::unique_ptr<RankChain> chain;
+    RankBorders borders;
     std::vector<double> y, missed, correction, left, joined;
+
+    explicit Parts(Ranks& ranks) : borders(ranks) {}
 };
 
 namespace {
 
 /// Row by row, columns ascending: those of A, then those behind.
-void store(const SparseMatrix& A, const std::vector<OutsideEntry>& outside, StoredRows& rows)
+void store(const SparseMatrix& A, const std::vector<OutsideEntry>& outside, int n_rows, StoredRows& rows)
 {
-    rows.starts.assign(static_cast<std::size_t>(A.size) + 1, 0);
+    rows.starts.assign(static_cast<std::size_t>(n_rows) + 1, 0);
     for (const int row : A.rows) ++rows.starts[row + 1];
     for (const OutsideEntry& entry : outside) ++rows.starts[entry.row + 1];
     std::partial_sum(rows.starts.begin(), rows.starts.end(), rows.starts.begin());
@@ -42,7 +45,7 @@ void store(const SparseMatrix& A, const std::vector<OutsideEntry>& outside, Stor
 
 }   // namespace
 
-RankFactors::RankFactors(Ranks& ranks) : ranks_(ranks), parts_(std::make_unique<Parts>()) {}
+RankFactors::RankFactors(Ranks& ranks) : ranks_(ranks), parts_(std::make_unique<Parts>(ranks)) {}
 RankFactors::~RankFactors() = default;
 
 bool RankFactors::factorise(const SparseMatrix& A, const std::vector<OutsideEntry>& outside, int n_columns,
@@ -50,21 +53,15 @@ bool RankFactors::factorise(const SparseMatrix& A, const std::vector<OutsideEntr
 {
     Parts& p = *parts_;
     p.places = places;
-    store(A, outside, p.rows);
-    std::vector<char> is_shared(static_cast<std::size_t>(n_columns), 0);
-    for (const int column : places.columns) is_shared[column] = 1;
-    std::vector<int> own, work(static_cast<std::size_t>(n_columns));
-    for (int c = 0; c < places.n_own; ++c)
-        if (is_shared[c] == 0) own.push_back(c);
-    if (places.from_end) std::ranges::reverse(own);
-    p.stretch.analyse(p.rows, {0, places.n_rows}, std::move(own), places.columns, work);
-    p.y.assign(static_cast<std::size_t>(A.size), 0.0);
-    const bool is_done = ranks_.all(p.stretch.eliminate(p.rows));
-    if (!is_done || places.n_unknowns == 0) return is_done;
-    if (!p.chain) p.chain = ranks_.make_chain();
+    store(A, outside, places.n_rows, p.rows);
+    std::vector<int> work(static_cast<std::size_t>(n_columns));
+    p.stretch.analyse(p.rows, {0, places.n_rows}, places.own, places.columns, work);
+    p.y.assign(static_cast<std::size_t>(places.n_rows), 0.0);
+    if (!ranks_.all(p.stretch.eliminate(p.rows))) return false;
     p.left.resize(p.stretch.left().size());
     p.joined.resize(places.columns.size());
-    return p.chain->factorise({places.n_unknowns, places.unknowns, p.stretch.left_values()});
+    return p.borders.factorise({static_cast<int>(p.left.size()), places.n_before, places.n_behind,
+                                places.of_all, places.n_of_all, p.stretch.left_values()});
 }
 
 void RankFactors::apply_inverse(std::span<const double> b, std::span<double> x)
@@ -72,11 +69,9 @@ void RankFactors::apply_inverse(std::span<const double> b, std::span<double> x)
     Parts& p = *parts_;
     std::ranges::copy(b, p.y.begin());
     p.stretch.forward(p.y.data());
-    if (p.places.n_unknowns > 0) {
-        for (std::size_t i = 0; i < p.left.size(); ++i) p.left[i] = p.y[p.stretch.left()[i]];
-        p.chain->solve(p.left, p.joined);
-        for (std::size_t i = 0; i < p.joined.size(); ++i) x[p.places.columns[i]] = p.joined[i];
-    }
+    for (std::size_t i = 0; i < p.left.size(); ++i) p.left[i] = p.y[p.stretch.left()[i]];
+    p.borders.solve(p.left, p.joined);
+    for (std::size_t i = 0; i < p.joined.size(); ++i) x[p.places.columns[i]] = p.joined[i];
     p.stretch.backward(p.y.data(), x.data());
 }
 
@@ -96,5 +91,7 @@ void RankFactors::solve(std::span<const double> b, std::span<double> x)
 long long RankFactors::entries() const { return parts_->stretch.n_entries(); }
 long long RankFactors::flops() const { return parts_->stretch.flops(); }
 int RankFactors::n_left() const { return static_cast<int>(parts_->stretch.left().size()); }
+int RankFactors::n_in_chain() const { return parts_->borders.n_rows(); }
+int RankFactors::n_chain() const { return parts_->borders.n_unknowns(); }
 
 }   // namespace livens::inline solvers_internal

@@ -11,23 +11,24 @@
 
 namespace livens::inline solvers_internal {
 
-/// An entry beside those of a rank's own matrix.
+/// An entry beside those of a rank's own matrix; those of a row in the order of their columns.
 struct OutsideEntry {
-    int row, column;   ///< of the rank; columns behind those of its matrix
+    int row, column;   ///< of the rank: columns behind those of its matrix, or rows behind all of its rows
     double value;
 };
 
-/// Which of a rank's columns are unknowns of the chain, too.
+/// Which of a rank's columns are its own, and which are unknowns of the chain, too.
 struct ChainPlaces {
-    int n_rows = 0, n_own = 0;   ///< of the rank's matrix; what comes behind is empty
-    int n_unknowns = 0;          ///< of the chain
-    std::vector<int> columns;    ///< of the rank
-    std::vector<int> unknowns;   ///< of the chain, ascending
-    bool from_end = false;       ///< its own columns are eliminated from the end of time
+    int n_rows = 0;             ///< of the rank: of its matrix, without empty ones, and those behind
+    std::vector<int> own;       ///< columns that no other rank sees, in the order of their elimination
+    std::vector<int> columns;   ///< the others: at the borders before and behind, then those of all ranks
+    int n_before = 0, n_behind = 0;
+    std::vector<int> of_all;   ///< numbers of the latter among all of these, ascending
+    int n_of_all = 0;
 };
 
-/// Every rank eliminates the columns that it alone sees by its own rows, and what is left of these makes a
-/// chain (theory.md, "The chain", "Stretches"). All ranks call in the same order.
+/// Every rank eliminates the columns that it alone sees by its own rows, and what is left of these is solved
+/// between ranks (theory.md, "The chain", "Stretches"). All ranks call in the same order.
 class RankFactors {
 public:
     explicit RankFactors(Ranks& ranks);
@@ -41,7 +42,9 @@ public:
     void solve(std::span<const double> b, std::span<double> x);
     long long entries() const;
     long long flops() const;   ///< of the last factorisation, of products with pivot rows
-    int n_left() const;        ///< rows that went into the chain
+    int n_left() const;        ///< rows that elimination left of the rank's
+    int n_in_chain() const;    ///< rows of these that see both borders
+    int n_chain() const;       ///< unknowns of the chain
 
 private:
     struct Parts;

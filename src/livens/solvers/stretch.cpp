@@ -72,7 +72,7 @@ void StretchFactors::clear()
 
 void StretchFactors::reserve(int n)
 {
-    const double share = 1.1 * n / static_cast<double>(rows.size());
+    const double share = 1.3 * n / static_cast<double>(rows.size());
     const auto foresee = [&](auto& numbers) {
         numbers.reserve(static_cast<std::size_t>(share * static_cast<double>(numbers.size())));
     };

@@ -179,8 +179,10 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
         refuse("method.momentum", "the strong momentum",
                "its law has no momenta at the ends of time that conditions could decide",
                "take the natural momentum");
-    if (mixed != nullptr && !problem.unknowns.is_empty())
-        refuse("method.family", "elements 'mixed' with unknown numbers", "", "use lobatto");
+    if (mixed != nullptr && given.at_start == Known::state && !problem.unknowns.is_empty())
+        refuse("method.family", "elements 'mixed' with unknown numbers and a known state at the start",
+               "they are solved with the momenta at both ends",
+               "use lobatto, or give components at the start");
     if (mixed != nullptr && (given.at_start == Known::momenta || given.at_end == Known::momenta))
         refuse("method.family", "elements 'mixed' with momenta of all bodies at the other end",
                "other motions that meet them are looked for with lobatto alone", "use lobatto");
@@ -193,11 +195,7 @@ void check_components(const Model& model, const Problem& problem, const Time& ti
                               "the value of '" + one.quantity.name + "' is no number", to_text(one.value),
                               "a finite number", "", ""});
     for (const Condition& one : given.components) refuse_no_speed(one);
-    const Ends ends = close_ends(model, problem, start_of(time), end_of(time), options.initial);   // throws
-    if (mixed != nullptr && ends.n_numbers > 0)
-        refuse("method.family", "elements 'mixed'",
-               "a periodic motion that keeps its energy or momenta is found with numbers beside it",
-               "use lobatto");
+    close_ends(model, problem, start_of(time), end_of(time), options.initial);   // throws
 }
 
 /// Unknown numbers: those of the problem itself, before any is looked for.

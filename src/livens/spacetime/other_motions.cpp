@@ -22,9 +22,13 @@ bool is_closed(const FoundNumbers& numbers)
 
 bool is_at_rest(const Model& model, const Ends& ends, const Motion& motion)
 {
+    return is_at_rest(model, ends, motion.at_end(0), motion);
+}
+
+bool is_at_rest(const Model& model, const Ends& ends, const State& first, const Motion& motion)
+{
     constexpr double still = 1e-6;   // lengths
     if (!ends.periodic.is_free) return false;
-    const State first = motion.at_end(0);
     for (int e = 0; e < motion.n_elements(); ++e)
         for (const double share : {0.5, 1.0}) {
             const double t = motion.mesh.ends[e] + share * motion.mesh.length(e);
@@ -36,11 +40,16 @@ bool is_at_rest(const Model& model, const Ends& ends, const Motion& motion)
 void report_no_period(const Model& model, const Ends& ends, const FoundNumbers& numbers, const Motion& motion,
                       SolveReport& report)
 {
+    report_no_period(numbers, is_at_rest(model, ends, motion), report);
+}
+
+void report_no_period(const FoundNumbers& numbers, bool is_at_rest, SolveReport& report)
+{
     if (!is_closed(numbers)) {
         report.status = SolveStatus::suspect;
         report.message = "the motion ends where what it keeps is as at its start, and is elsewhere, as after "
                          "half a period; try: another guess of the period, or more elements";
-    } else if (is_at_rest(model, ends, motion)) {
+    } else if (is_at_rest) {
         report.status = SolveStatus::suspect;
         report.message = "the bodies stay at rest, which is a periodic motion of any period; try: a start "
                          "that is nearer to "

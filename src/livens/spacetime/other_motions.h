@@ -14,7 +14,10 @@ namespace livens::inline spacetime_internal {
 
 /// Of a periodic motion that nothing drives: bodies that stay where they are do so for any time.
 bool is_at_rest(const Model& model, const Ends& ends, const Motion& motion);
+/// Of a part of a motion that begins in this state.
+bool is_at_rest(const Model& model, const Ends& ends, const State& first, const Motion& part);
 /// Such a motion is suspect, and one that ends elsewhere than it began.
+void report_no_period(const FoundNumbers& numbers, bool is_at_rest, SolveReport& report);
 void report_no_period(const Model& model, const Ends& ends, const FoundNumbers& numbers, const Motion& motion,
                       SolveReport& report);
 

@@ -159,14 +159,27 @@ void take_rounding(const NumberedProblem& numbered, const Uncertainty& found, So
 
 /// Of the elements of the paper by nodal ones about their motion: it is the conditions that are asked, and a
 /// finer element tells a conjugate time from one nearby.
-void refuse_undetermined(const Model& model, const Ends& ends, const Method& method,
-                         ConditionNumbersOfLast& last, Solution& solution)
+void refuse_undetermined(const NumberedProblem& numbered, const Method& method, ConditionNumbersOfLast& last,
+                         Solution& solution)
 {
     const Motion& motion = solution.motion;
     SolveReport& report = solution.report;
-    const ModelTables tables(model, ends.independent);
-    NodalWindow nodal(tables, motion.mesh, ends,
-                      lobatto_rule(std::clamp(2 * std::get<Mixed>(method).degree, 4, 8)));
+    const ElementRule rule = lobatto_rule(std::clamp(2 * std::get<Mixed>(method).degree, 4, 8));
+    if (numbered.size() > 0) {
+        FoundNumbers found = solution.numbers;
+        std::vector<double> values = found.values;
+        values.insert(values.end(), found.unfolded.begin(), found.unfolded.end());
+        UnknownsWindow nodal(numbered, values, nodal_windows(rule, true), found);
+        const auto guess = [&](double t) { return motion.at(carried_to(numbered.mesh(), t, motion.mesh)); };
+        SolveReport ignored;
+        if (!nodal.open(0, motion.n_elements(), ignored) || !nodal.start_from(guess)) return;
+        if (!nodal.equations().residual()) return;
+        nodal.close({}, ignored);
+        return take_rounding(numbered, refuse_undetermined(nodal, last, report), solution);
+    }
+    const Ends& ends = numbered.ends();
+    const ModelTables tables(numbered.model(), ends.independent);
+    NodalWindow nodal(tables, motion.mesh, ends, rule);
     const bool is_formed = nodal.open(0, motion.n_elements(), report) &&
                            nodal.start_from([&](double t) { return motion.at(t); }) &&
                            nodal.equations().residual() && nodal.equations().factorise();
@@ -213,8 +226,10 @@ void finish(const ModelTables& tables, Window& window, const Ends& ends, const M
 }
 
 /// The window of a problem with unknown numbers, as they are tried.
-UnknownsWindow::Maker maker_of(const ElementRule& rule, bool look_at_laws, const PhasePlan* plan)
+UnknownsWindow::Maker maker_of(const Method& method, bool look_at_laws, const PhasePlan* plan)
 {
+    if (const auto* mixed = std::get_if<Mixed>(&method)) return mixed_windows(*mixed);
+    const ElementRule rule = rule_of(method);
     if (plan == nullptr) return nodal_windows(rule, look_at_laws);
     return [=](const NumberedProblem::Instance& of) {
         return std::make_shared<PhasesWindow>(of.rebuilt.model, of.mesh, of.ends, *plan, rule, look_at_laws);
@@ -276,7 +291,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
         const bool looks = options.look_at_laws;
         if (numbered.size() > 0)
             return std::make_unique<UnknownsWindow>(numbered, numbered.guesses(),
-                                                    maker_of(rule_of(method), looks, plan), solution.numbers);
+                                                    maker_of(method, looks, plan), solution.numbers);
         if (plan != nullptr)
             return std::make_unique<PhasesWindow>(std::make_shared<const Model>(model), mesh, ends, *plan,
                                                   rule_of(method), looks);
@@ -305,7 +320,7 @@ Solution solve_by_windows(const Model& model, const Problem& problem, const Time
     if (!report.converged() && report.status != SolveStatus::cancelled)
         solution.cannot_begin = why_unseen(numbered);
     finish(tables, *window, ends, method, options.condition, last, solution);
-    if (is_asked && is_mixed && report.converged()) refuse_undetermined(model, ends, method, last, solution);
+    if (is_asked && is_mixed && report.converged()) refuse_undetermined(numbered, method, last, solution);
     if (report.converged()) report_no_period(model, ends, solution.numbers, solution.motion, report);
     if (phases && !report.converged() && report.status != SolveStatus::cancelled)
         if (const std::string beginning = begin_in_words(model, mesh.start(), mesh.end()); !beginning.empty())

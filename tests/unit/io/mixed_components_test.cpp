@@ -28,7 +28,9 @@ Scenario scenario_of(const std::string& text)
 Solution solution_of(const std::string& text)
 {
     const Scenario s = scenario_of(text);
-    return solve(s.model, {s.conditions}, s.time, s.method, s.options);
+    Problem problem{s.conditions};
+    problem.unknowns = s.unknowns;
+    return solve(s.model, problem, s.time, s.method, s.options);
 }
 
 const std::string mixed2 = "family = \"mixed\"\nbasis = \"lagrange\"\ndegree = 2",
@@ -190,6 +192,37 @@ TEST(MixedComponents, PeriodicMotionsOfForces)
     EXPECT_NEAR(sample_state(finer.motion, 0).X[0](0, 0), x, 1e-6);
 }
 
+/// A damper, and how long it takes, by conditions that lobatto meets, too.
+TEST(MixedComponents, UnknownNumbersConvergeToThoseOfLobatto)
+{
+    const std::string
+        start = "[start]\nknown = { \"j1.angle\" = 0.1, \"j2.angle\" = -0.2, \"j2.angle_rate\" = 0.5, "
+                "\"j1.angle_rate\" = 0 }\n",
+        damper = test::replaced(chain, "damping = 0.4", "damping = { unknown = 0.3, low = 0 }");
+    const auto timed = [](std::string text) {
+        return test::replaced(std::move(text), "end = 0.5", "end = { unknown = 0.5, low = 0.1, high = 1 }");
+    };
+    const auto number_of = [&](bool is_duration, int elements, const std::string& method) {
+        const std::string of_damper = damper + start + "[end]\nknown = { \"j2.angle\" = -0.24 }\n" +
+                                      in_time(0.4, elements, method),
+                          of_time = timed(chain + start + "[end]\nknown = { \"j1.angle\" = 0.5 }\n" +
+                                          in_time(0.5, elements, method));
+        const Solution s = solution_of(is_duration ? of_time : of_damper);
+        EXPECT_TRUE(s.report.converged()) << s.report.message;
+        return s.numbers.values.empty() ? std::nan("") : s.numbers.values[0];
+    };
+    for (const bool is_duration : {false, true}) {
+        const double truth = number_of(is_duration, 20, fine);
+        for (const auto& [method, order] : {std::pair{mixed2, 2.8}, {mixed3, 3.5}}) {
+            const double before = number_of(is_duration, 16, method) - truth,
+                         off = number_of(is_duration, 32, method) - truth;
+            EXPECT_LT(std::abs(off), 1e-4) << method;
+            // of degree p they are of order p + 1, as places inside of elements are
+            EXPECT_GT(std::log2(std::abs(before / off)), order) << before << " " << off;
+        }
+    }
+}
+
 TEST(MixedComponents, WhatTheyCannotIsRefused)
 {
     const auto code_of = [](const std::string& text) {
@@ -212,6 +245,11 @@ TEST(MixedComponents, WhatTheyCannotIsRefused)
     const std::string momenta = "[start]\ngiven = \"momenta\"\n[end]\nknown = { \"pin.angle\" = 0.2 }\n";
     EXPECT_NE(code_of(pendulum(momenta, 0.5, mixed2)).find("conditions-method"), std::string::npos);
     EXPECT_EQ(code_of(pendulum(momenta, 0.5, fine)), "") << "negative control";
+    const std::string from_state =
+        "[end]\nknown = { \"pin.angle\" = 0.2 }\n[[load]]\ntype = \"spring\"\nname = "
+        "\"s\"\njoint = \"pin\"\nstiffness = { unknown = 3 }\n";
+    EXPECT_NE(code_of(pendulum(from_state, 0.5, mixed2)).find("conditions"), std::string::npos)
+        << code_of(pendulum(from_state, 0.5, mixed2));
     EXPECT_EQ(code_of(pendulum(known, 0.5, mixed2)), "") << "negative control";
 }
 

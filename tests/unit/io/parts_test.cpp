@@ -49,9 +49,9 @@ void write_on(int n_ranks, const Scenario& scenario, const std::filesystem::path
     run_as_ranks(n_ranks, [&](Ranks& ranks) {
         RankWork work;
         const Problem problem{scenario.conditions};
-        const Run part =
-            part_of_run(scenario, solve_on_ranks(scenario.model, problem, scenario.time, scenario.method,
-                                                 scenario.options, ranks, work));
+        Solution solution = solve_on_ranks(scenario.model, problem, scenario.time, scenario.method,
+                                           scenario.options, ranks, work);
+        const Run part = part_of_run(scenario, std::move(solution), work);
         if (ranks.rank() == failing) throw IoError("no space left");
         write_parts(file, scenario, part, ranks, true);
     });

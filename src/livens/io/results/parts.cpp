@@ -12,6 +12,7 @@
 
 #include "livens/io/results/atomic_file.h"
 #include "livens/io/results/writing.h"
+#include "livens/io/solve_scenario.h"
 
 namespace livens {
 
@@ -88,17 +89,19 @@ std::string told(std::string text, Ranks& ranks)
 
 }   // namespace
 
-Run part_of_run(const Scenario& scenario, Solution part)
+Run part_of_run(const Scenario& scenario, Solution part, const RankWork& work)
 {
     const Method method = part.method;
+    const bool has_numbers = part.numbers.rebuilt.model != nullptr;
+    if (has_numbers) tell_found(scenario.unknowns, part);
     Run run = make_run(scenario.model, std::move(part), method);
     run.scenario_text = scenario.text;
     run.meshes = scenario.meshes;
     run.title = scenario.title;
     run.resolved = scenario.resolved;
-    const TimeMesh& mesh = std::get<TimeMesh>(scenario.time);
-    run.output = scenario.output.empty() ? mesh.ends : scenario.output;
-    run.motion.block_ends = {0, mesh.n_elements()};
+    if (has_numbers) run.numbers = numbers_of(scenario.unknowns, {});
+    run.output = scenario.output.empty() ? work.mesh.ends : scenario.output;
+    run.motion.block_ends = {0, work.mesh.n_elements()};
     return run;
 }
 
@@ -114,7 +117,9 @@ void write_parts(const std::filesystem::path& file, const Scenario& scenario, co
     }
     name = told(name, ranks);
     if (!ranks.is_first()) own.emplace(name);
-    const TimeMesh& mesh = std::get<TimeMesh>(scenario.time);
+    double start = part.motion.start(), end = part.motion.end();
+    ranks.broadcast(0, {&start, 1});
+    ranks.broadcast(ranks.size() - 1, {&end, 1});
     ClassicWriter out;
     FileOfRanks shared(part.motion, ranks);
     out.share(shared);
@@ -122,8 +127,8 @@ void write_parts(const std::filesystem::path& file, const Scenario& scenario, co
     out.attribute("livens_format", format_major);
     out.attribute("livens_format_minor", format_minor);
     out.attribute("converged", part.report.reached_end() ? 1 : 0);
-    out.attribute("start", mesh.start());
-    out.attribute("end", mesh.end());
+    out.attribute("start", start);
+    out.attribute("end", end);
     visit_run(archive, part);
     write_derived(archive, scenario.model, part, false);
     archive.write([&](std::uint64_t offset, std::string_view bytes) {

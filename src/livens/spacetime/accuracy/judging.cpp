@@ -74,10 +74,7 @@ std::string another_period(const Model& model, const Problem& problem, const Sol
     }
     const double allowed = std::max(same, rounding * solution.report.arrival / period);
     if (second.report.converged() && off <= allowed) return "";
-    return "the motion comes back after " + to_text(period, 6) +
-           " s and does not repeat itself: one period later it is elsewhere by " + to_text(off, 3) +
-           " (in model lengths or rad) near t = " + to_text(at + period, 4) +
-           " s, since what drives it has another period; try: a multiple of that period";
+    return of_another_period(period, off, at + period);
 }
 
 /// Energy that nobody supplied has a reason that no other check knows. Where an accuracy was asked for and is

@@ -95,10 +95,16 @@ std::vector<std::string> unmet_components(const Model& model, const Ends& ends, 
     instants.push_back(motion.end());
     const std::vector<double> values = values_in(
         model, ends, [&](double t) { return motion.at(t); }, instants);
+    return unmet_values(model, ends, values, motion.end() - motion.start());
+}
+
+std::vector<std::string> unmet_values(const Model& model, const Ends& ends, const std::vector<double>& values,
+                                      double duration)
+{
     std::vector<std::string> reasons;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const Condition& one = ends.components[i];
-        const double scale = scale_of(one, model.length(), motion.end() - motion.start());
+        const double scale = scale_of(one, model.length(), duration);
         if (std::abs(values[i] - one.value) <= met_component * scale) continue;
         reasons.push_back("what is given is not met: " + in_words(one) + " is " + to_text(values[i], 9) +
                           " " + one.quantity.unit + ", given is " + to_text(one.value, 9) + " " +

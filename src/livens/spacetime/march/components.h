@@ -56,5 +56,8 @@ std::vector<double> values_in(const Model& model, const Ends& ends,
 
 /// A sentence for each condition that a motion does not meet, to 1e-8 of scale_of().
 std::vector<std::string> unmet_components(const Model& model, const Ends& ends, const Motion& motion);
+/// The same of what quantities of conditions are, over this duration.
+std::vector<std::string> unmet_values(const Model& model, const Ends& ends, const std::vector<double>& values,
+                                      double duration);
 
 }   // namespace livens::inline spacetime_internal

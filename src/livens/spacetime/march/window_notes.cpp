@@ -103,6 +103,14 @@ std::string of_sticking(const std::string& load, double t)
            "tanh(w/0.001) for the sign of w";
 }
 
+std::string of_another_period(double period, double off, double t)
+{
+    return "the motion comes back after " + to_text(period, 6) +
+           " s and does not repeat itself: one period later it is elsewhere by " + to_text(off, 3) +
+           " (in model lengths or rad) near t = " + to_text(t, 4) +
+           " s, since what drives it has another period; try: a multiple of that period";
+}
+
 std::string of_singular_end(double t)
 {
     return "the joints lose rank at t = " + to_text(t, 6) +

@@ -48,6 +48,9 @@ std::string of_locking(const Model& model, const State& first, const State& last
 /// Where the motion stays at a jump of this load.
 std::string of_sticking(const std::string& load, double t);
 
+/// Of a motion that ends as it began after `period`, and one later is off by that, most at t.
+std::string of_another_period(double period, double off, double t);
+
 /// "1 element", "2 elements".
 std::string count(int n, const char* what);
 

@@ -86,10 +86,10 @@ std::vector<int> Block::cuts() const
     return rows;
 }
 
-/// The scaled matrix. Returns whether its pattern is another one.
-bool Block::form()
+/// The scaled matrix of the equations alone. Returns whether its pattern is another one.
+bool Block::form_inner()
 {
-    bool is_new = tangent_.evaluate(fields(), inner());
+    const bool is_new = tangent_.evaluate(fields(), inner());
     SparseMatrix& A = inner();
     scaled_.rows.assign(scaling_.rows().begin(), scaling_.rows().end());
     scaled_.columns.assign(scaling_.columns().begin(), scaling_.columns().end());
@@ -97,11 +97,15 @@ bool Block::form()
         for (int k = A.column_starts[c]; k < A.column_starts[c + 1]; ++k)
             A.values[k] *= scaled_.rows[A.rows[k]] * scaled_.columns[c];
     });
-    if (border_ != nullptr) {
-        border_->add_to(scaled_, equations_, fields());
-        is_new = true;
-    }
     return is_new;
+}
+
+bool Block::form()
+{
+    const bool is_new = form_inner();
+    if (border_ == nullptr) return is_new;
+    border_->add_to(scaled_, equations_, fields());
+    return true;
 }
 
 bool Block::factorise()
@@ -110,16 +114,24 @@ bool Block::factorise()
     return factors_.factorise(scaled_.all, is_new, cuts());
 }
 
-/// With a border, increments end with those of momenta in world axes.
-void Block::solve(std::span<double> dx)
+std::vector<double> Block::rows_behind() const
 {
     std::vector<double> rows = residual_;
-    if (border_ != nullptr)
-        for (const double missed : border_->conditions().missed()) rows.push_back(-missed);
-    work_.resize(rows.size());
-    increment_.resize(rows.size());
-    const int n_rows = static_cast<int>(rows.size());
-    for_each_item(n_rows, least_shared_columns, [&](int i) { work_[i] = -rows[i] * scaled_.rows[i]; });
+    for (double& row : rows) row = -row;
+    if (border_ != nullptr) {
+        const std::vector<double>& missed = border_->conditions().missed();
+        rows.insert(rows.end(), missed.begin(), missed.end());
+    }
+    return rows;
+}
+
+/// With a border, increments end with those of momenta in world axes, and of unknown numbers.
+void Block::solve_for(const Block& other, std::span<double> dx)
+{
+    work_ = other.rows_behind();
+    increment_.resize(work_.size());
+    const int n_rows = static_cast<int>(work_.size());
+    for_each_item(n_rows, least_shared_columns, [&](int i) { work_[i] *= scaled_.rows[i]; });
     factors_.solve(scaled_.all, work_, increment_);
     for_each_item(n_rows, least_shared_columns, [&](int i) { increment_[i] *= scaled_.columns[i]; });
     const std::size_t n = residual_.size();
@@ -127,12 +139,24 @@ void Block::solve(std::span<double> dx)
     if (border_ != nullptr) border_->conditions().to_momenta(increment_.data() + n, dx.data() + n);
 }
 
-bool Block::move(std::span<const double> dx, double damping)
+void Block::adopt(const Block& other)
+{
+    fields_[0] = fields_[1] = other.fields_[other.kept_];
+    if (border_ != nullptr) border_->conditions().adopt(other.border_->conditions());
+    begin();
+}
+
+void Block::move_fields(std::span<const double> dx, double damping)
 {
     current_ = 1 - kept_;
     fields_[current_] = fields_[kept_];
+    equations_.space().add(fields_[current_], dx, damping);
+}
+
+bool Block::move(std::span<const double> dx, double damping)
+{
     const auto n = static_cast<std::size_t>(equations_.space().size());
-    equations_.space().add(fields_[current_], dx.first(n), damping);
+    move_fields(dx.first(n), damping);
     if (border_ != nullptr) border_->conditions().move(dx.subspan(n), damping);
     return true;
 }

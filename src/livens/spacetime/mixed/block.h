@@ -57,6 +57,13 @@ public:
     const Fields& fields() const { return fields_[current_]; }
     /// Scales of rows and columns at the fields as they are; once, before an iteration begins.
     void begin() { scaling_.set(fields()); }
+    /// The kept point of a block of the same layout, on another model.
+    virtual void adopt(const Block& other);
+    /// Rows of the last residual(), then those of conditions, all with the opposite sign.
+    std::vector<double> rows_behind() const;
+    /// Increments of another block of the same layout, at its current point, by the factors of this one.
+    virtual void solve_for(const Block& other, std::span<double> dx);
+    Border* border() { return border_; }
     const std::string& bad_load() const { return bad_load_; }
     Worst worst() const { return scaling_.worst(residual_); }
     long long factor_entries() const { return factors_.entries(); }
@@ -69,7 +76,7 @@ public:
     }
     bool residual() override;
     bool factorise() override;
-    void solve(std::span<double> dx) override;
+    void solve(std::span<double> dx) override { solve_for(*this, dx); }
     bool move(std::span<const double> dx, double damping) override;
     void keep() override;
     double size_of(std::span<const double> dx) const override;
@@ -79,6 +86,8 @@ protected:
     /// The matrix of the equations alone.
     SparseMatrix& inner() { return border_ != nullptr ? scaled_.inner : scaled_.all; }
     bool form();
+    bool form_inner();
+    void move_fields(std::span<const double> dx, double damping);
     std::vector<int> cuts() const;
 
     Equations equations_;

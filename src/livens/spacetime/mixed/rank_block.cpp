@@ -9,33 +9,75 @@
 
 namespace livens::mixed {
 
-RankBlock::RankBlock(Equations equations, Ranks& ranks)
-    : Block(std::move(equations), SparseBackend::eigen), ranks_(ranks), of_rank_(ranks)
+RankBlock::RankBlock(Equations equations, Ranks& ranks, Border* border)
+    : Block(std::move(equations), SparseBackend::eigen, border), ranks_(ranks), of_rank_(ranks)
 {
     const int n = equations_.space().size();
     for (const bool at_end : {false, true}) {
-        if (at_end ? ranks.is_last() : ranks.is_first()) continue;
+        if (has(at_end)) continue;
         Side& one = sides_[at_end ? 1 : 0];
         one = side(at_end);
         const int numbers = static_cast<int>(one.columns.size());
-        const int border = ranks.rank() - (at_end ? 0 : 1),
-                  first = n + (at_end ? static_cast<int>(sides_[0].rows.size()) : 0);
+        const int first = n + (at_end ? static_cast<int>(sides_[0].rows.size()) : 0);
         for (int i = 0; i < numbers; ++i) {
             places_.columns.push_back(one.columns[i]);
-            places_.unknowns.push_back(2 * numbers * border + i);
         }
         for (int i = 0; i < numbers; ++i) {
             places_.columns.push_back(first + i);
-            places_.unknowns.push_back(2 * numbers * border + numbers + i);
             outside_.push_back({one.rows[i], first + i, one.sign});
         }
-        places_.n_unknowns = 2 * numbers * (ranks.size() - 1);
+        (at_end ? places_.n_behind : places_.n_before) = 2 * numbers;
     }
-    places_.n_rows = equations_.space().numbering.n_equations();
-    places_.n_own = equations_.space().numbering.n_unknowns();
-    places_.from_end = ranks.is_last() && !ranks.is_first();
+    places_.n_rows = n_equations_ = equations_.space().numbering.n_equations();
+    n_columns_ = n + n_transfers();
+    if (border_ != nullptr) place_border();
+    place_own();
     transfers_[0].assign(static_cast<std::size_t>(n_transfers()), 0.0);
     transfers_[1] = transfers_[0];
+}
+
+/// Beside unknowns at borders of ranks there are those that join the rows of conditions, and numbers.
+void RankBlock::place_border()
+{
+    const int f = border_->n_free(), m = border_->size();
+    for (const bool at_end : {false, true}) {
+        std::vector<int>& rows = own_.rows[at_end ? 1 : 0];
+        rows.assign(static_cast<std::size_t>(m), -1);
+        if (!has(at_end)) continue;
+        own_.momenta[at_end ? 1 : 0] = n_columns_;
+        n_columns_ += f;
+        for (int i = 0; i < m; ++i)
+            if (border_->at(i) != (at_end ? Condition::At::start : Condition::At::end))
+                rows[i] = places_.n_rows++;
+    }
+    const auto join = [&](bool is_here) {
+        const int number = places_.n_of_all++;
+        if (!is_here) return -1;
+        places_.columns.push_back(n_columns_);
+        places_.of_all.push_back(number);
+        return n_columns_++;
+    };
+    own_.between.assign(static_cast<std::size_t>(m), -1);
+    for (int i = 0; i < m; ++i)
+        if (border_->at(i) == Condition::At::both) own_.between[i] = join(has(false) || has(true));
+    own_.numbers = n_columns_;
+    for (int j = 0; j < border_->n_numbers(); ++j) join(true);
+}
+
+/// In the order of time, or of the last rank against it; momenta beside the places that they belong to.
+void RankBlock::place_own()
+{
+    std::vector<char> is_shared(static_cast<std::size_t>(n_columns_), 0);
+    for (const int column : places_.columns) is_shared[column] = 1;
+    const auto add_momenta = [&](bool at_end) {
+        const int first = own_.momenta[at_end ? 1 : 0];
+        for (int j = 0; first >= 0 && j < border_->n_free(); ++j) places_.own.push_back(first + j);
+    };
+    add_momenta(false);
+    for (int c = 0; c < equations_.space().numbering.n_unknowns(); ++c)
+        if (is_shared[c] == 0) places_.own.push_back(c);
+    add_momenta(true);
+    if (ranks_.is_last() && !ranks_.is_first()) std::ranges::reverse(places_.own);
 }
 
 RankBlock::Side RankBlock::side(bool at_end) const
@@ -61,7 +103,8 @@ RankBlock::Side RankBlock::side(bool at_end) const
 
 int RankBlock::n_own() const
 {
-    return equations_.space().numbering.n_unknowns() - static_cast<int>(sides_[0].columns.size());
+    const int of_border = ranks_.is_first() && border_ != nullptr ? border_->conditions().n_numbers() : 0;
+    return equations_.space().numbering.n_unknowns() - static_cast<int>(sides_[0].columns.size()) + of_border;
 }
 
 /// act(row, number among the transfers, sign)
@@ -102,54 +145,148 @@ void RankBlock::share_guess()
     transfers_[1] = transfers_[0];
 }
 
+void RankBlock::adopt(const Block& other)
+{
+    Block::adopt(other);
+    const auto& of = static_cast<const RankBlock&>(other);
+    transfers_[0] = transfers_[1] = of.transfers_[of.kept_];
+}
+
 bool RankBlock::residual()
 {
     const bool is_finite = Block::residual();
-    for_transfers(
-        [&](int row, std::size_t i, double sign) { residual_[row] += sign * transfers_[current_][i]; });
+    if (is_finite)
+        for_transfers(
+            [&](int row, std::size_t i, double sign) { residual_[row] += sign * transfers_[current_][i]; });
     return ranks_.all(is_finite);
 }
 
 bool RankBlock::factorise()
 {
-    form();
-    return of_rank_.factorise(scaled_.all, outside_, n_unknowns(), places_);
+    form_inner();
+    outside_.resize(static_cast<std::size_t>(n_transfers()));
+    if (border_ != nullptr) add_border();
+    return of_rank_.factorise(inner(), outside_, n_columns_, places_);
+}
+
+void RankBlock::add_border()
+{
+    border_->differentiate();
+    for (const bool at_end : {false, true}) {
+        if (!has(at_end)) continue;
+        const int end = at_end ? 1 : 0, first = own_.momenta[end];
+        border_->take_momenta(at_end, equations_, fields(), [&](int row, int j, double value) {
+            outside_.push_back({row, first + j, value * scaled_.rows[row]});
+        });
+        const auto take = [&](int i, int column, double value) {
+            if (own_.rows[end][i] >= 0) outside_.push_back({own_.rows[end][i], column, value});
+        };
+        border_->take_conditions(at_end, equations_, fields(), [&](int i, int column, double value) {
+            take(i, column, value * scaled_.columns[column]);
+        });
+        border_->take_closing(at_end, [&](int i, int j, double value) { take(i, first + j, value); });
+    }
+    add_numbers();
+    scale_border();
+    for (int i = 0; i < border_->size(); ++i) {
+        if (own_.between[i] < 0) continue;
+        if (own_.rows[0][i] >= 0) outside_.push_back({own_.rows[0][i], own_.between[i], 1});
+        if (own_.rows[1][i] >= 0) outside_.push_back({own_.rows[1][i], own_.between[i], -1});
+    }
+}
+
+void RankBlock::add_numbers()
+{
+    const DenseMatrix by_numbers = border_->numbers();
+    const int n = equations_.space().size();
+    for (int j = 0; j < by_numbers.cols; ++j) {
+        const auto add = [&](int row, double value) {
+            if (row >= 0 && value != 0) outside_.push_back({row, own_.numbers + j, value});
+        };
+        for (int r = 0; r < n_equations_; ++r) add(r, by_numbers(r, j) * scaled_.rows[r]);
+        for (int i = 0; i < border_->size(); ++i) add(row_of(i), by_numbers(n + i, j));
+    }
+}
+
+/// Rows of conditions to a largest entry of one, of both rows where there are two.
+void RankBlock::scale_border()
+{
+    std::vector<int> condition(static_cast<std::size_t>(places_.n_rows - n_equations_));
+    for (const std::vector<int>& rows : own_.rows)
+        for (int i = 0; i < border_->size(); ++i)
+            if (rows[i] >= 0) condition[rows[i] - n_equations_] = i;
+    own_.scales.assign(static_cast<std::size_t>(border_->size()), 0.0);
+    const auto for_entries = [&](const auto& act) {
+        for (auto entry = outside_.begin() + n_transfers(); entry != outside_.end(); ++entry)
+            if (entry->row >= n_equations_)
+                act(own_.scales[condition[entry->row - n_equations_]], entry->value);
+    };
+    for_entries([](double& largest, double value) { largest = std::max(largest, std::abs(value)); });
+    ranks_.largest(own_.scales);
+    for (double& scale : own_.scales) scale = scale > 0 ? 1 / scale : 1;
+    for_entries([](double scale, double& value) { value *= scale; });
 }
 
 /// A transfer has the scale of its row, so that it counts one there.
-void RankBlock::solve(std::span<double> dx)
+void RankBlock::solve_for(const Block& other, std::span<double> dx)
 {
-    const std::size_t n = residual_.size();
-    work_.resize(n);
-    increment_.assign(dx.size(), 0.0);
-    for (std::size_t i = 0; i < n; ++i) work_[i] = -residual_[i] * scaled_.rows[i];
+    const auto& of = static_cast<const RankBlock&>(other);
+    const std::size_t n = n_inner(), behind = n + static_cast<std::size_t>(n_transfers());
+    work_.assign(static_cast<std::size_t>(places_.n_rows), 0.0);
+    increment_.assign(static_cast<std::size_t>(n_columns_), 0.0);
+    for (int r = 0; r < n_equations_; ++r) work_[r] = -of.residual_[r] * scaled_.rows[r];
+    for (int i = 0; border_ != nullptr && i < border_->size(); ++i)
+        if (const int row = row_of(i); row >= 0)
+            work_[row] = of.border_->conditions().missed()[i] * own_.scales[i];
     of_rank_.solve(work_, increment_);
     for (std::size_t i = 0; i < n; ++i) dx[i] = increment_[i] * scaled_.columns[i];
     for_transfers([&](int row, std::size_t i, double) { dx[n + i] = increment_[n + i] / scaled_.rows[row]; });
+    if (border_ == nullptr) return;
+    std::vector<double> along(static_cast<std::size_t>(border_->size()));
+    const auto f = static_cast<std::size_t>(border_->n_free());
+    for (const bool at_end : {false, true}) {
+        const std::span<double> one = std::span(along).subspan(at_end ? f : 0, f);
+        if (has(at_end)) std::copy_n(increment_.begin() + own_.momenta[at_end ? 1 : 0], f, one.begin());
+        ranks_.broadcast(at_end ? ranks_.size() - 1 : 0, one);
+    }
+    std::copy(increment_.begin() + own_.numbers, increment_.end(),
+              along.begin() + static_cast<std::ptrdiff_t>(2 * f));
+    border_->conditions().to_momenta(along.data(), dx.data() + behind);
 }
 
 bool RankBlock::move(std::span<const double> dx, double damping)
 {
-    const std::size_t n = residual_.size();
-    Block::move(dx.first(n), damping);
+    const std::size_t n = n_inner();
+    move_fields(dx.first(n), damping);
     transfers_[current_] = transfers_[kept_];
     for (std::size_t i = 0; i < transfers_[current_].size(); ++i)
         transfers_[current_][i] += damping * dx[n + i];
+    if (border_ != nullptr)
+        border_->conditions().move(dx.subspan(n + static_cast<std::size_t>(n_transfers())), damping);
     return true;
 }
 
 double RankBlock::size_of(std::span<const double> dx) const
 {
-    return ranks_.largest(scaling_.size_of(dx.first(residual_.size())));
+    const std::size_t n = n_inner();
+    double size = scaling_.size_of(dx.first(n));
+    if (border_ != nullptr) {
+        const double of_momenta =
+            border_->conditions().size_of(dx.subspan(n + static_cast<std::size_t>(n_transfers())));
+        if (!(of_momenta <= size) && !std::isnan(size)) size = of_momenta;
+    }
+    return ranks_.largest(size);
 }
 
 NewtonProblem::Rows RankBlock::rows() const
 {
-    Rows rows = Block::rows();
-    double both[] = {rows.size, rows.terms};
+    double both[] = {worst().value, scaling_.largest(fields())};
     ranks_.largest(both);
-    rows.size = both[0];
-    rows.terms = both[1];
+    const double terms = std::max(both[1], 1e-300);
+    const double missing = border_ != nullptr ? terms * border_->conditions().largest() : 0;
+    Rows rows;
+    rows.size = std::max(both[0], missing);
+    rows.terms = terms;
     return rows;
 }
 

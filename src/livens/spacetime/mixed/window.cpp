@@ -129,7 +129,7 @@ MixedWindow::MixedWindow(const ModelTables& tables, const TimeMesh& mesh, const 
     if (!ends.has_components()) return;
     // Places at both ends are unknown, and momenta there close the law.
     given_ = {false, true, false, true};
-    border_ = std::make_unique<Border>(*tables.model, ends);
+    border_ = std::make_unique<Border>(*tables.model, ends, ranks);
 }
 
 MixedWindow::~MixedWindow() = default;
@@ -164,7 +164,7 @@ Given MixedWindow::known_of_part() const
 
 std::unique_ptr<mixed::Block> MixedWindow::make_block(Equations equations)
 {
-    if (ranks_ != nullptr) return std::make_unique<RankBlock>(std::move(equations), *ranks_);
+    if (ranks_ != nullptr) return std::make_unique<RankBlock>(std::move(equations), *ranks_, border_.get());
     assert(equations.space().numbering.n_unknowns() == equations.space().numbering.n_equations());
     return std::make_unique<mixed::Block>(std::move(equations), method_.linear_solver, border_.get());
 }
@@ -206,6 +206,14 @@ bool MixedWindow::open(int first, int last, SolveReport&)
     return true;
 }
 
+std::vector<double> MixedWindow::values_of_conditions() const
+{
+    std::vector<double> values;
+    for (std::size_t i = 0; border_ != nullptr && i < ends_.components.size(); ++i)
+        values.push_back(ends_.value(i) - border_->conditions().missed()[i]);
+    return values;
+}
+
 const RankBlock* MixedWindow::of_rank() const { return dynamic_cast<const RankBlock*>(block_.get()); }
 
 bool MixedWindow::start_from(const Guess& guess)
@@ -214,11 +222,31 @@ bool MixedWindow::start_from(const Guess& guess)
     take_guess(guess);
     if (border_ != nullptr)
         for (const bool last : {false, true})
-            if (!border_->conditions().begin(last, guess(mesh_.ends[last ? last_ : first_]))) return false;
+            if (!border_->conditions().begin(last, guess(last ? mesh_.end() : mesh_.start()))) return false;
     fix_known();
     if (ranks_ != nullptr) static_cast<RankBlock&>(*block_).share_guess();
     block_->begin();
     return true;
+}
+
+void MixedWindow::border_with(std::function<DenseMatrix(Formed)> columns)
+{
+    border_->number_by([columns = std::move(columns)] { return columns({}); });
+}
+
+bool MixedWindow::factorise() { return block_->factorise(); }
+
+bool MixedWindow::adopt(const BorderedWindow& other, bool)
+{
+    block_->adopt(*static_cast<const MixedWindow&>(other).block_);
+    return true;
+}
+
+std::vector<double> MixedWindow::rows_in(Formed) { return block_->rows_behind(); }
+
+void MixedWindow::solve_for(const BorderedWindow& other, std::span<double> dx)
+{
+    block_->solve_for(*static_cast<const MixedWindow&>(other).block_, dx);
 }
 
 /// X0, X and P by interpolation, multipliers by the acceleration-level equation at their functions' instants.

@@ -6,11 +6,12 @@
 
 #include "livens/solvers/ranks.h"
 #include "livens/spacetime/march/ends.h"
-#include "livens/spacetime/march/window.h"
 #include "livens/spacetime/mixed/coordinates.h"
 #include "livens/spacetime/mixed/end_momentum.h"
 #include "livens/spacetime/mixed/motion_of_blocks.h"
 #include "livens/spacetime/mixed/numbering.h"
+#include "livens/spacetime/nodal/bordered_window.h"
+#include "livens/spacetime/nodal/unknowns_window.h"
 #include "livens/time/time_space.h"
 
 namespace livens::mixed {
@@ -40,7 +41,7 @@ struct EndOfBlock {
     std::vector<Matrix34> P;
 };
 
-class MixedWindow final : public Window {
+class MixedWindow final : public BorderedWindow {
 public:
     /// References must outlive the window; `tables` are with rigidity.
     /// `ranks`: this one solves its part of all elements; null: all that are asked for.
@@ -51,6 +52,12 @@ public:
     bool open(int first, int last, SolveReport& report) override;
     NewtonProblem& equations() override;
     bool start_from(const Guess& guess) override;
+    void border_with(std::function<DenseMatrix(Formed)> columns) override;
+    bool factorise() override;
+    /// Places of all functions are unknowns, so that there is nothing to be pulled.
+    bool adopt(const BorderedWindow& other, bool is_pulled) override;
+    std::vector<double> rows_in(Formed formed) override;
+    void solve_for(const BorderedWindow& other, std::span<double> dx) override;
     State at(int element_end) const override;
     AcceptedElements close(const AcceptanceCriteria& criteria, SolveReport& report) override;
     WorstResidual worst() const override;
@@ -58,6 +65,10 @@ public:
     Motion take_motion() override;
     /// What the ranks have done; null without these.
     const mixed::RankBlock* of_rank() const;
+    /// First and last of the elements at hand, the latter not included.
+    std::pair<int, int> elements() const { return {first_, last_}; }
+    /// What quantities of conditions by component are in the solution at hand, angles with their turns.
+    std::vector<double> values_of_conditions() const;
 
 private:
     mixed::EndMomentum momentum_of(bool X_known, const EndOfBlock& end) const;
@@ -81,5 +92,8 @@ private:
     std::unique_ptr<mixed::Block> block_;
     mixed::MotionOfBlocks motion_;
 };
+
+/// Windows for problems with unknown numbers. `ranks`: see MixedWindow. References must outlive them.
+UnknownsWindow::Maker mixed_windows(const Mixed& method, Ranks* ranks = nullptr);
 
 }   // namespace livens::inline spacetime_internal

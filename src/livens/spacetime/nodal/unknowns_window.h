@@ -38,6 +38,9 @@ public:
     WorstResidual worst() const override { return now_->window->worst(); }
     void describe(SolveReport& report) const override;
     Motion take_motion() override { return now_->window->take_motion(); }
+    /// The window at the numbers at hand, and what it was made of.
+    const BorderedWindow& now() const { return *now_->window; }
+    const NumberedProblem::Instance& instance() const { return now_->of; }
 
 private:
     struct Instance {
