@@ -17,8 +17,13 @@ def source(root, file):
 
 def mistakes_of(root, block):
     texts = {which: text for which, _, text in TEXT.findall(block)}
-    parts = {key: value.split() for key, value in LISTS.findall(TEXT.sub("TEXT", block))}
+    rest = TEXT.sub("TEXT", block)
+    parts = {key: value.split() for key, value in LISTS.findall(rest)}
+    if "]]" in rest:
+        return [f"{parts['NAME'][0]}: a text ends early, at the first ]] in it: [=[ and ]=] may be around it"]
     name, file = parts["NAME"][0], parts["FILE"][0]
+    if not texts.get("NEW"):
+        return [f"{name}: its new text is empty"]
     if not source(root, file).is_file():
         return [f"{name}: there is no {file}"]
     found = []
@@ -42,6 +47,8 @@ def control(root, text):
     block = next(b for b in FAULT.findall(text) if re.search(r"FILE \S+\.h\s", b) and "RECOMPILE" in b)
     file = re.search(r"FILE (\S+)", block).group(1)
     wrong = {"old text": TEXT.sub("OLD [[no such line anywhere]]", block, count=1),
+             "is empty": re.sub(r"NEW \[\[.*?\]\]", "NEW [[]]", block, flags=re.S),
+             "ends early": block.replace("OLD [[", "OLD [[a[b[c]] = ", 1),
              "no source": re.sub(r"RECOMPILE [^A-Z]*", "", block),
              "to RECOMPILE": re.sub(r"(RECOMPILE )", r"\1nowhere/gone.cpp ", block),
              "there is no": block.replace(f"FILE {file}", "FILE nowhere/gone.cpp")}

@@ -2032,7 +2032,7 @@ livens_mutant(NAME states_blind_to_positions
 livens_mutant(NAME reactions_not_turned
               FILE multibody/relocation.cpp
               OLD [[reaction.along = to.by.rotation * reaction.along;]]
-              NEW [[]]
+              NEW [[(void)0;]]
               TESTS_OF unit_io
               MUST_FAIL Include.LoadsReadReactionsOfTheirParts
                         ReactionLaws.MoveWithTheirModels)
@@ -2049,7 +2049,7 @@ livens_mutant(NAME reactions_by_number
 livens_mutant(NAME impact_stays_at_its_pair
               FILE spacetime/phases/phase_chain.cpp
               OLD [[events.insert(events.end(), beside.begin(), beside.end());]]
-              NEW [[]]
+              NEW [[(void)0;]]
               TESTS_OF unit_io
               MUST_FAIL Stops.AreMetThroughBodiesThatTouch)
 
@@ -2064,7 +2064,7 @@ livens_mutant(NAME speed_of_squares
 # The first stop that would have to pull keeps its impulse.
 livens_mutant(NAME stop_that_pulls
               FILE dynamics/instant/impact.cpp
-              OLD [[if ((*back)[k] > 0 && impulses_[pushing_[k]] < step * (*back)[k]) {]]
-              NEW [[if (false && impulses_[pushing_[k]] < step * (*back)[k]) {]]
+              OLD [[if ((*back)[k] > 0 &&]]
+              NEW [[if (false &&]]
               TESTS_OF unit_dynamics
               MUST_FAIL Impact.FulfilsItsLawForAnyMassesAndSpeeds)

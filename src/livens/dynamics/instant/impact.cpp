@@ -93,7 +93,7 @@ std::optional<std::vector<double>> solved(std::vector<std::vector<double>> D, st
 }
 
 /// Impulses >= 0 with speeds + D impulses >= least, and one of both zero for each: velocities next to those
-/// before, by the dual method of Goldfarb and Idnani (1983). One after the other of the stops that are passed
+/// before, by the dual method of [Goldfarb1983]. One after the other of the stops that are passed
 /// fastest is pushed until it is not, while those that push already keep their speed; who would have to pull
 /// is let go. It ends with any number of stops, also where some say what others say.
 class Complementarity {
