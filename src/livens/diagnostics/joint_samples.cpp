@@ -11,6 +11,7 @@
 #include "livens/diagnostics/accelerations.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/sample.h"
+#include "livens/dynamics/instant/least_loads.h"
 #include "livens/dynamics/instant/reactions.h"
 #include "livens/dynamics/rows/rank.h"
 #include "livens/dynamics/rows/row_tables.h"
@@ -212,6 +213,7 @@ struct JointSampler::Parts {
     UniqueReactions least;   // at an element end
     int least_end = -1;
     std::optional<Accelerations> accelerations;   // once an instant between ends is asked for
+    std::optional<LeastLoads> least_loads;        // once forces alone are asked for
 };
 
 JointSampler::JointSampler(const Model& model, const Motion& motion)
@@ -288,6 +290,27 @@ std::vector<JointSample> JointSampler::at(const State& given) const
         });
     };
     return joints_in(model_, motion_, *held, reactions);
+}
+
+std::vector<JointSample> JointSampler::forces_at(const State& given) const
+{
+    const auto n_independent = static_cast<int>(parts_->independent.size());
+    if (n_independent == model_.n_rows() || model_.has_events()) return at(given);
+    const std::optional<Held> held = parts_->held_in(model_, motion_, given);
+    if (!held) return {};
+    if (!parts_->least_loads) parts_->least_loads.emplace(model_, parts_->rows, n_independent);
+    const std::vector<bool> is_bounded = bounded_joints(model_, held->left, held->right);
+    const Reaction* found =
+        parts_->least_loads->find(held->state.t, held->state.X, numbers_of(held->left, held->right));
+    if (found == nullptr || !held->is_acceleration_level) return at(given);
+    std::vector<JointSample> samples(is_bounded.size());
+    for (std::size_t j = 0; j < samples.size(); ++j) {
+        samples[j].is_acceleration_level = true;
+        samples[j].is_bounded = is_bounded[j];
+        samples[j].left = is_bounded[j] ? found[j] : unknown;
+        samples[j].right = is_bounded[j] ? found[samples.size() + j] : unknown;
+    }
+    return samples;
 }
 
 const UniqueReactions* JointSampler::least_at(const State& state, int end) const

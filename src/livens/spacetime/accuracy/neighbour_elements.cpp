@@ -16,8 +16,7 @@ namespace livens {
 namespace {
 
 constexpr int most_beside_steps = 8, most_slow_beside = 3;
-constexpr int least_beside_degree = 3;    // of which polynomials go on to say something
-constexpr int most_beside_twists = 100;   // steps of more are combined, which windows know
+constexpr int least_beside_degree = 3;   // of which polynomials go on to say something
 // Contraction; and of steps of free bodies, which cost a small part of a factor.
 constexpr double slow_beside = 0.3, free_beside = 0.6;
 constexpr double farthest_beside = 1e-3;      // a step, lengths or radians
@@ -38,8 +37,7 @@ bool is_known_to(const ModelTables& tables, const ElementRule& rule, const Motio
 {
     const Field& X = motion.X;
     return rule.degree >= least_beside_degree && X.degree == rule.degree && X.points == rule.points &&
-           X.denominators.empty() && tables.n_twists < most_beside_twists &&
-           (tables.loads.turns.size() == 0 || !motion.load_angles.empty());
+           X.denominators.empty() && (tables.loads.turns.size() == 0 || !motion.load_angles.empty());
 }
 
 }   // namespace
