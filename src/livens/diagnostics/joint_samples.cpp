@@ -292,23 +292,36 @@ std::vector<JointSample> JointSampler::at(const State& given) const
     return joints_in(model_, motion_, *held, reactions);
 }
 
+/// At element ends, where nothing has to be found but what multipliers say.
 std::vector<JointSample> JointSampler::forces_at(const State& given) const
 {
+    const int end = element_end_at(motion_.mesh, given.t);
     const auto n_independent = static_cast<int>(parts_->independent.size());
-    if (n_independent == model_.n_rows() || model_.has_events()) return at(given);
-    const std::optional<Held> held = parts_->held_in(model_, motion_, given);
-    if (!held) return {};
-    if (!parts_->least_loads) parts_->least_loads.emplace(model_, parts_->rows, n_independent);
-    const std::vector<bool> is_bounded = bounded_joints(model_, held->left, held->right);
-    const Reaction* found =
-        parts_->least_loads->find(held->state.t, held->state.X, numbers_of(held->left, held->right));
-    if (found == nullptr || !held->is_acceleration_level) return at(given);
-    std::vector<JointSample> samples(is_bounded.size());
+    const bool is_redundant = n_independent < model_.n_rows();
+    if (end < 0 || motion_.end_multipliers.empty() || model_.has_events()) return at(given);
+    if (model_.has_drives() && !is_redundant) return at(given);
+    const std::size_t n = static_cast<std::size_t>(motion_.n_rows);
+    const std::span<const double> both =
+        std::span(motion_.end_multipliers).subspan(2 * static_cast<std::size_t>(end) * n, 2 * n);
+    if (std::ranges::any_of(both, [](double x) { return std::isnan(x); })) return at(given);
+    std::vector<JointSample> samples(model_.joints().size());
+    const Reaction* found = nullptr;
+    if (is_redundant) {
+        if (!parts_->least_loads) parts_->least_loads.emplace(model_, parts_->rows, n_independent);
+        found = parts_->least_loads->find(given.t, given.X, both);
+        if (found == nullptr) return at(given);
+    }
+    const bool jumps = !std::ranges::equal(both.first(n), both.last(n));
     for (std::size_t j = 0; j < samples.size(); ++j) {
-        samples[j].is_acceleration_level = true;
-        samples[j].is_bounded = is_bounded[j];
-        samples[j].left = is_bounded[j] ? found[j] : unknown;
-        samples[j].right = is_bounded[j] ? found[samples.size() + j] : unknown;
+        JointSample& sample = samples[j];
+        sample.is_acceleration_level = sample.is_bounded = true;
+        const auto reaction = [&](std::size_t side) {
+            return found != nullptr
+                       ? found[side * samples.size() + j]
+                       : parts_->reaction(model_, static_cast<int>(j), given.X, both.subspan(side * n, n));
+        };
+        sample.left = reaction(0);
+        sample.right = jumps ? reaction(1) : sample.left;
     }
     return samples;
 }
