@@ -214,7 +214,8 @@ bool NeighbourElements::iterate(BesideState& one, const BesideLimits& limits, bo
             return end(steps, pivot > least_pivot_beside * least_pivot_beside);
         }
         if (!(shrinks <= (by_tangent ? slow_beside : free_beside))) ++n_slow;
-        if (is_slow && by_tangent) choice_.forget_factor();
+        // rows do not know how far the guess is off the joints: what the first step leaves says nothing of it
+        if (is_slow && by_tangent && steps > 1) choice_.forget_factor();
         rows = sizes.rows;
         const bool goes_on = n_slow < most_slow_beside && steps < most;
         if (!goes_on || !take_step(one, by_tangent, sizes)) return end(most_beside_steps, false);
