@@ -10,10 +10,10 @@ namespace livens {
 namespace {
 
 constexpr int most_rows_of_joint = 6;                    // whose reactions may say something of their own
-constexpr double most_work = 2e5;                        // of a factor
+constexpr double most_work_of_factor = 2e5;              // of a factor
 constexpr double alike_rows = 1e-10;                     // of a joint: squared pivot
 constexpr double free_pivot = 1e-9, held_pivot = 1e-6;   // squared
-constexpr double most_corrected = 1e-8;   // by the second pass, which leaves the square of that
+constexpr double most_of_second_pass = 1e-8;   // by the second pass, which leaves the square of that
 
 /// L of L L^T, row by row; the smallest pivot over the row's own square.
 double factorise_square(int n, double* a)
@@ -89,7 +89,7 @@ void LeastLoads::find_profile()
         begin_.push_back(size - first_[i]);
         size += width;
         work += 0.5 * width * width;
-        serves_ = serves_ && work < most_work;
+        serves_ = serves_ && work < most_work_of_factor;
         if (!serves_) return;
     }
     matrix_.resize(static_cast<std::size_t>(size));
@@ -278,7 +278,7 @@ bool LeastLoads::find_set(const double* multipliers, Reaction* reactions)
     const double size = add_least(push_);
     left_ = push_;
     add_push(lambda_.data(), -1, left_);
-    if (!(add_least(left_) <= most_corrected * size)) return false;
+    if (!(add_least(left_) <= most_of_second_pass * size)) return false;
     for (std::size_t j = 0; j < parts_.size(); ++j) {
         const Part& part = parts_[j];
         Reaction reaction;
