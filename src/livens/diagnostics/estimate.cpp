@@ -89,7 +89,7 @@ void ErrorMeter::compare(const Motion& finer, int first, int last)
         if (estimate_.n_joints == 0 || finer.end_multipliers.empty()) continue;
         // where a piece begins or ends, the other side is that of another one
         const bool begins = end == first && first > 0, ends = end == last && last < motion_.n_elements();
-        compare_reactions(end, joints.at(a), finer_joints.at(b),
+        compare_reactions(end, joints.forces_at(a), finer_joints.forces_at(b),
                           begins ? Side::right
                           : ends ? Side::left
                                  : Side::middle);

@@ -11,6 +11,7 @@
 #include "livens/diagnostics/accelerations.h"
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/sample.h"
+#include "livens/dynamics/instant/least_loads.h"
 #include "livens/dynamics/instant/reactions.h"
 #include "livens/dynamics/rows/rank.h"
 #include "livens/dynamics/rows/row_tables.h"
@@ -217,6 +218,7 @@ struct JointSampler::Parts {
     UniqueReactions least;   // at an element end
     int least_end = -1;
     std::optional<Accelerations> accelerations;   // once an instant between ends is asked for
+    std::optional<LeastLoads> least_loads;        // once forces alone are asked for
 };
 
 JointSampler::JointSampler(const Model& model, const Motion& motion)
@@ -293,6 +295,40 @@ std::vector<JointSample> JointSampler::at(const State& given) const
         });
     };
     return joints_in(parts_->acting, motion_, *held, reactions);
+}
+
+/// At element ends, where nothing has to be found but what multipliers say.
+std::vector<JointSample> JointSampler::forces_at(const State& given) const
+{
+    const int end = element_end_at(motion_.mesh, given.t);
+    const auto n_independent = static_cast<int>(parts_->independent.size());
+    const bool is_redundant = n_independent < model_.n_rows();
+    if (end < 0 || motion_.end_multipliers.empty() || model_.has_events()) return at(given);
+    if (model_.has_drives() && !is_redundant) return at(given);
+    const std::size_t n = static_cast<std::size_t>(motion_.n_rows);
+    const std::span<const double> both =
+        std::span(motion_.end_multipliers).subspan(2 * static_cast<std::size_t>(end) * n, 2 * n);
+    if (std::ranges::any_of(both, [](double x) { return std::isnan(x); })) return at(given);
+    std::vector<JointSample> samples(model_.joints().size());
+    const Reaction* found = nullptr;
+    if (is_redundant) {
+        if (!parts_->least_loads) parts_->least_loads.emplace(model_, parts_->rows, n_independent);
+        found = parts_->least_loads->find(given.t, given.X, both);
+        if (found == nullptr) return at(given);
+    }
+    const bool jumps = !std::ranges::equal(both.first(n), both.last(n));
+    for (std::size_t j = 0; j < samples.size(); ++j) {
+        JointSample& sample = samples[j];
+        sample.is_acceleration_level = sample.is_bounded = true;
+        const auto reaction = [&](std::size_t side) {
+            return found != nullptr
+                       ? found[side * samples.size() + j]
+                       : parts_->reaction(model_, static_cast<int>(j), given.X, both.subspan(side * n, n));
+        };
+        sample.left = reaction(0);
+        sample.right = jumps ? reaction(1) : sample.left;
+    }
+    return samples;
 }
 
 const UniqueReactions* JointSampler::least_at(const State& state, int end) const

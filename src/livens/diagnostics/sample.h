@@ -79,6 +79,8 @@ public:
 
     /// In a state that sample_state() gave.
     std::vector<JointSample> at(const State& state) const;
+    /// The same forces and torques for less, without what is_unique and shared say of them.
+    std::vector<JointSample> forces_at(const State& state) const;
     /// Where joints are redundant: the least reactions at an element end, of the multipliers on both sides,
     /// found once for those who ask one after the other. Null: there are none, or not for both sides.
     const UniqueReactions* least_at(const State& state, int end) const;

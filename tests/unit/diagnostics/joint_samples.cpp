@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <span>
+
 #include "livens/diagnostics/rigidity.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/dynamics/rows/rank.h"
@@ -78,6 +80,33 @@ TEST(JointSampler, IsSampleJointsAtOneInstantAfterTheOther)
                 EXPECT_EQ(found[j].is_acceleration_level, one[j].is_acceleration_level);
                 EXPECT_GT(norm(found[j].left.force), 1e-3);
             }
+        }
+    }
+}
+
+// Of redundant hinges by another way, which asks for no null vector. The control: what the multipliers say as
+// they are is not the least.
+TEST(JointSampler, ForcesAloneAreTheSame)
+{
+    for (const bool is_redundant : {false, true}) {
+        const Door door(is_redundant);
+        const JointSampler joints(door.model, door.motion);
+        for (const double t : {0.0, 0.2, 0.25, 0.4, 1.0}) {
+            const State state = sample_state(door.motion, t);
+            const std::vector<JointSample> forces = joints.forces_at(state), all = joints.at(state);
+            ASSERT_EQ(forces.size(), all.size());
+            for (std::size_t j = 0; j < all.size(); ++j) {
+                expect_near(forces[j].left, all[j].left);
+                expect_near(forces[j].right, all[j].right);
+                EXPECT_EQ(forces[j].is_acceleration_level, all[j].is_acceleration_level);
+            }
+            const int end = element_end_at(door.motion.mesh, t);
+            if (end < 0 || !is_redundant) continue;
+            const std::size_t n = static_cast<std::size_t>(door.model.n_rows());
+            const auto given =
+                std::span(door.motion.end_multipliers).subspan(2 * static_cast<std::size_t>(end) * n, n);
+            const Reaction as_given = joint_reaction(door.model, 0, state.X, given);
+            EXPECT_GT(norm(as_given.force - forces[0].left.force), 1e-3);
         }
     }
 }

@@ -15,9 +15,8 @@ namespace livens {
 
 namespace {
 
-constexpr int most_beside_steps = 8, most_slow_beside = 3;
-constexpr int least_beside_degree = 3;    // of which polynomials go on to say something
-constexpr int most_beside_twists = 100;   // steps of more are combined, which windows know
+constexpr int most_beside_steps = 8, most_slow_beside = 3, most_slow_with_factor = 1;
+constexpr int least_beside_degree = 3;   // of which polynomials go on to say something
 // Contraction; and of steps of free bodies, which cost a small part of a factor.
 constexpr double slow_beside = 0.3, free_beside = 0.6;
 constexpr double farthest_beside = 1e-3;      // a step, lengths or radians
@@ -38,8 +37,7 @@ bool is_known_to(const ModelTables& tables, const ElementRule& rule, const Motio
 {
     const Field& X = motion.X;
     return rule.degree >= least_beside_degree && X.degree == rule.degree && X.points == rule.points &&
-           X.denominators.empty() && tables.n_twists < most_beside_twists &&
-           (tables.loads.turns.size() == 0 || !motion.load_angles.empty());
+           X.denominators.empty() && (tables.loads.turns.size() == 0 || !motion.load_angles.empty());
 }
 
 }   // namespace
@@ -201,7 +199,7 @@ bool NeighbourElements::iterate(BesideState& one, const BesideLimits& limits, bo
         choice_.took(steps, is_solved, by_tangent);
         return is_solved;
     };
-    for (int steps = 0, n_slow = 0;; ++steps) {
+    for (int steps = 0, n_slow = 0, n_slow_by_slopes = 0;; ++steps) {
         evaluate(one, n_slow == 0 && limits.apart <= error_of_factor * pivot_, sizes);
         if (!std::isfinite(sizes.finite)) return end(most_beside_steps, false);
         const double shrinks = steps > 0 && rows > 0 ? sizes.rows / rows : 0;
@@ -216,7 +214,13 @@ bool NeighbourElements::iterate(BesideState& one, const BesideLimits& limits, bo
             return end(steps, pivot > least_pivot_beside * least_pivot_beside);
         }
         if (!(shrinks <= (by_tangent ? slow_beside : free_beside))) ++n_slow;
-        if (is_slow && by_tangent) choice_.forget_factor();
+        // rows do not know how far the guess is off the joints: what the first step leaves says nothing of it
+        n_slow_by_slopes += is_slow && steps > 1 ? 1 : 0;
+        if (n_slow_by_slopes > most_slow_with_factor &&
+            by_tangent) {   // single ones are with a good one, too
+            choice_.forget_factor();
+            n_slow_by_slopes = 0;
+        }
         rows = sizes.rows;
         const bool goes_on = n_slow < most_slow_beside && steps < most;
         if (!goes_on || !take_step(one, by_tangent, sizes)) return end(most_beside_steps, false);

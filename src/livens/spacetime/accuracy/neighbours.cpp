@@ -3,6 +3,7 @@
 #include "livens/spacetime/accuracy/neighbours.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -30,8 +31,10 @@ constexpr double most_folded = 100;
 constexpr int first_piece = 16, most_in_piece = 128;
 /// Where roundings are added behind each: many enough at any instant, of which a few may be where it matters.
 constexpr int rounded_piece = 4;
-/// Elements after which it is seen whether they have become too far: seldom, since it is foreseen.
+/// Elements after which it is seen whether they have become too far: seldom, since it is foreseen, but soon
+/// where it was not, in which case all beyond would be solved in vain.
 constexpr int seen_after = 8;
+bool is_seen_after(unsigned n) { return n % seen_after == 0 || std::has_single_bit(n); }
 /// Pieces that could not be gone through element by element, before nobody tries.
 constexpr int most_failed = 3;
 
@@ -189,7 +192,7 @@ int Neighbours::go_through(int first, int last)
         });
         if (!is_solved) return first;
         const auto one = std::ranges::find(all_, false, &Perturbed::is_lost);
-        if ((e - first) % seen_after == seen_after - 1 && one != all_.end() &&
+        if (is_seen_after(static_cast<unsigned>(e - first + 1)) && one != all_.end() &&
             is_too_far(one->sides[0], e + 1))
             return e + 1;
     }

@@ -52,19 +52,20 @@ bool motion_of(const double* own, int m, int d, const double* above, int n, doub
             for (int i = 0; i < d; ++i) T[i * n + j] -= q[r * d + i] * x[r];
         }
     }
-    for (int f = m; f < d; ++f) {   // the unit vector with most left
-        double best[6] = {}, most = -1;
-        for (int e = 0; e < d; ++e) {
-            double v[6] = {};
-            v[e] = 1;
-            const double left = orthogonalise(q, f, d, v, nullptr, 0);
-            if (left <= most) continue;
-            most = left;
-            std::copy_n(v, d, best);
-        }
+    double left[6];   // of unit vectors, squared: what those so far have of them is taken off
+    std::fill_n(left, d, 1.0);
+    for (int k = 0; k < m; ++k)
+        for (int e = 0; e < d; ++e) left[e] -= q[k * d + e] * q[k * d + e];
+    for (int f = m; f < d; ++f) {   // the one with most left
+        const auto e = std::max_element(left, left + d) - left;
+        double* v = q + f * d;
+        std::fill_n(v, d, 0.0);
+        v[e] = 1;
+        const double size = orthogonalise(q, f, d, v, nullptr, 0);
         for (int i = 0; i < d; ++i) {
-            q[f * d + i] = best[i] / most;
-            z[i * (d - m) + f - m] = best[i] / most;
+            v[i] /= size;
+            z[i * (d - m) + f - m] = v[i];
+            left[i] -= v[i] * v[i];
         }
     }
     return true;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/dynamics/rows/twist.h"
 #include "livens/dynamics/rows/twist_blocks.h"
 
 namespace livens {
@@ -39,7 +40,7 @@ void JointSlopes::place(int lane, const lanes::Values& nodes)
     }
 }
 
-Matrix<12, 12>& JointSlopes::of(int i, int j)
+Matrix4& JointSlopes::of(int i, int j)
 {
     const auto found = std::find_if(pairs_.rbegin(), pairs_.rend(),
                                     [=](const Pair& pair) { return pair.i == i && pair.j == j; });
@@ -59,10 +60,9 @@ void JointSlopes::add_row(int r, double mu, Instant at)
         for (const double share : y) terms_ = std::max(terms_, std::abs(mu * share));
     }
     if (!table.is_quadratic) return add_hessian(r, mu, at);
-    for (const RowTable::Entry& entry : table.form) {
-        Matrix<12, 12>& K = of(table.bodies[entry.to_side], table.bodies[entry.from_side]);
-        for (int i = 0; i < 3; ++i) K(entry.to + i, entry.from + i) -= mu * entry.value;
-    }
+    for (const RowTable::Entry& entry : table.form)
+        of(table.bodies[entry.to_side], table.bodies[entry.from_side])(entry.to / 3, entry.from / 3) -=
+            mu * entry.value;
 }
 
 /// Of a form d2/dX dX, by rows and columns of its bodies: gradients are X K, so that C_ij^T stands where X_j
@@ -70,12 +70,10 @@ void JointSlopes::add_row(int r, double mu, Instant at)
 void JointSlopes::add_form(const QuadraticForm& form, int i, int j, double factor)
 {
     const auto add = [&](int body, int other, const Matrix4& C, bool is_transposed) {
-        Matrix<12, 12>& K = of(body, other);
+        Matrix4& K = of(body, other);
         for (int to = 0; to < 4; ++to)
-            for (int from = 0; from < 4; ++from) {
-                const double k = factor * (is_transposed ? C(to, from) : C(from, to));
-                for (int d = 0; k != 0 && d < 3; ++d) K(3 * to + d, 3 * from + d) += k;
-            }
+            for (int from = 0; from < 4; ++from)
+                K(to, from) += factor * (is_transposed ? C(to, from) : C(from, to));
     };
     add(j, j, form.c_jj, false);
     if (i == world) return;
@@ -148,6 +146,15 @@ void JointSlopes::add_turning(int b)
                     slopes.by_X[6 * (3 + a) + 3 + c] += s[3 * a + i] * H[i][j] * s[3 * c + j];
 }
 
+SlopesOfPair JointSlopes::by_twists(const Pair& pair) const
+{
+    double raw[36] = {};
+    twist::add_block(pair.K.a, X_.data() + 12 * pair.i, X_.data() + 12 * pair.j, 1, raw, 6);
+    SlopesOfPair slopes{pair.i, pair.j, {}, {}};
+    scale_block(tables_, maps_.data(), pair.i, maps_.data(), pair.j, raw, slopes.by_X);
+    return slopes;
+}
+
 const std::vector<SlopesOfPair>& JointSlopes::find(int node, const WindowLayout& layout,
                                                    const RowPattern& pattern, const lanes::Values& nodes)
 {
@@ -159,12 +166,7 @@ const std::vector<SlopesOfPair>& JointSlopes::find(int node, const WindowLayout&
     const Instant at{layout.time(rule_, node)};
     for (std::size_t c = 0; c < pattern.rows().size(); ++c)
         add_row(pattern.rows()[c], nodes.impulses[static_cast<int>(c) * width_ + lane], at);
-    for (const auto& [i, j, K] : pairs_) {
-        double raw[36] = {};
-        SlopesOfPair& slopes = slopes_.emplace_back(SlopesOfPair{i, j, {}, {}});
-        add_reduced(K, X_.data() + 12 * i, X_.data() + 12 * j, tables_.bodies[j].dofs, raw);
-        scale_block(tables_, maps_.data(), i, maps_.data(), j, raw, slopes.by_X);
-    }
+    for (const Pair& pair : pairs_) slopes_.push_back(by_twists(pair));
     for (int b = 0; b < tables_.n_bodies(); ++b)
         if (tables_.bodies[b].dofs == 6) add_turning(b);
     return slopes_;

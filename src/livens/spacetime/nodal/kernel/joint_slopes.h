@@ -24,9 +24,10 @@ public:
     void begin() { terms_ = 0; }
 
 private:
+    /// Forces on columns of body i by columns of body j: gradients are X K.
     struct Pair {
         int i, j;
-        Matrix<12, 12> K;
+        Matrix4 K;
     };
 
     void place(int lane, const lanes::Values& nodes);
@@ -34,7 +35,8 @@ private:
     void add_hessian(int r, double mu, Instant at);
     void add_function(const ConstraintRow& row, const SmoothFunction& function, std::size_t first, double mu);
     void add_form(const QuadraticForm& form, int i, int j, double factor);
-    Matrix<12, 12>& of(int i, int j);
+    Matrix4& of(int i, int j);
+    SlopesOfPair by_twists(const Pair& pair) const;
     void add_turning(int body);
 
     const ModelTables& tables_;

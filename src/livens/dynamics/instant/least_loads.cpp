@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// docs/theory.md, "Reactions of redundant joints": the least sum by the wrenches on bodies.
+#include "livens/dynamics/instant/least_loads.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace livens {
+
+namespace {
+
+constexpr int most_rows_of_joint = 6;                    // whose reactions may say something of their own
+constexpr double most_work_of_factor = 2e5;              // of a factor
+constexpr double alike_rows = 1e-10;                     // of a joint: squared pivot
+constexpr double free_pivot = 1e-9, held_pivot = 1e-6;   // squared
+constexpr double most_of_second_pass = 1e-8;   // by the second pass, which leaves the square of that
+
+/// L of L L^T, row by row; the smallest pivot over the row's own square.
+double factorise_square(int n, double* a)
+{
+    double smallest = 1;
+    for (int i = 0; i < n; ++i) {
+        double* row = a + i * n;
+        for (int k = 0; k < i; ++k) {
+            double sum = row[k];
+            for (int m = 0; m < k; ++m) sum -= row[m] * a[k * n + m];
+            row[k] = sum / a[k * n + k];
+        }
+        double pivot = row[i];
+        for (int m = 0; m < i; ++m) pivot -= row[m] * row[m];
+        if (!(pivot > 0)) return 0;
+        smallest = std::min(smallest, pivot / row[i]);
+        row[i] = std::sqrt(pivot);
+    }
+    return smallest;
+}
+
+}   // namespace
+
+LeastLoads::LeastLoads(const Model& model, const RowTables& rows, int n_independent)
+    : model_(model), tables_(rows), n_independent_(n_independent), length_(model.length()),
+      poles_(static_cast<std::size_t>(model.n_bodies()))
+{
+    std::vector<int> n_points(poles_.size(), 0);
+    const auto mean = [&](int body, const Vector3& at) {
+        if (body != world) poles_[body] += (1.0 / ++n_points[body]) * (at - poles_[body]);
+    };
+    for (const Joint& joint : model.joints()) {
+        mean(joint.first, joint.point_first);
+        mean(joint.second, joint.point_second);
+    }
+    for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) parts_.push_back(part_of(j));
+    find_profile();
+    lambda_.resize(static_cast<std::size_t>(model.n_rows()));
+}
+
+LeastLoads::Part LeastLoads::part_of(int joint)
+{
+    Part part{};
+    part.first_row = model_.first_row(joint);
+    part.n_rows = static_cast<int>(model_.joints()[joint].rows.size());
+    for (int r = part.first_row; r < part.first_row + part.n_rows; ++r)
+        for (const int body : tables_[static_cast<std::size_t>(r)].bodies)
+            if (std::ranges::find(part.bodies, body) == part.bodies.end()) part.bodies.push_back(body);
+    std::ranges::sort(part.bodies);
+    const auto n = static_cast<std::size_t>(part.n_rows);
+    part.reactions.resize(6 * n);
+    part.square.resize(n * n);
+    part.loads.resize(6 * n * part.bodies.size());
+    part.scaled.resize(part.loads.size());
+    part.sums.resize(n);
+    serves_ = serves_ && part.n_rows <= most_rows_of_joint;
+    return part;
+}
+
+void LeastLoads::find_profile()
+{
+    const int n = 6 * model_.n_bodies();
+    first_.resize(static_cast<std::size_t>(n));
+    for (int i = 0; i < n; ++i) first_[i] = i - i % 6;
+    for (const Part& part : parts_)
+        for (const int body : part.bodies)
+            for (int i = 6 * body; i < 6 * body + 6; ++i)
+                first_[i] = std::min(first_[i], 6 * part.bodies.front());
+    int size = 0;
+    double work = 0;
+    for (int i = 0; i < n; ++i) {
+        const int width = i + 1 - first_[i];
+        begin_.push_back(size - first_[i]);
+        size += width;
+        work += 0.5 * width * width;
+        serves_ = serves_ && work < most_work_of_factor;
+        if (!serves_) return;
+    }
+    matrix_.resize(static_cast<std::size_t>(size));
+    push_.resize(static_cast<std::size_t>(n));
+    left_ = y_ = push_;
+}
+
+const Reaction* LeastLoads::find(double t, std::span<const Matrix34> X, std::span<const double> multipliers)
+{
+    if (!serves_) return nullptr;
+    std::ranges::fill(matrix_, 0.0);
+    for (std::size_t j = 0; j < parts_.size(); ++j) {
+        Part& part = parts_[j];
+        form(model_.joints()[j], {t}, X, part);
+        if (part.n_rows > 0 && !(factorise_square(part.n_rows, part.square.data()) > alike_rows))
+            return nullptr;
+        add(part);
+    }
+    if (!factorise()) return nullptr;
+    const std::size_t n = lambda_.size(), n_sets = n > 0 ? multipliers.size() / n : 0;
+    found_.resize(n_sets * parts_.size());
+    for (std::size_t set = 0; set < n_sets; ++set) {
+        const auto one = multipliers.subspan(set * n, n);
+        Reaction* reactions = found_.data() + set * parts_.size();
+        if (set > 0 && std::ranges::equal(one, multipliers.first(n)))
+            std::copy_n(found_.data(), parts_.size(), reactions);
+        else if (!find_set(one.data(), reactions))
+            return nullptr;
+    }
+    return found_.data();
+}
+
+/// Reactions, loads and products of a joint's rows.
+void LeastLoads::form(const Joint& joint, Instant at, std::span<const Matrix34> X, Part& part) const
+{
+    const int n = part.n_rows, n_bodies = static_cast<int>(part.bodies.size());
+    std::ranges::fill(part.reactions, 0.0);
+    std::ranges::fill(part.loads, 0.0);
+    double g[RowTables::gradient_size];
+    for (int r = 0; r < n; ++r) {
+        const RowTable& row = tables_[static_cast<std::size_t>(part.first_row + r)];
+        std::fill_n(g, 12 * row.n_sides, 0.0);
+        tables_.gradient(part.first_row + r, at, X.data()->data(), g);
+        for (int side = 0; side < row.n_sides; ++side) {
+            const int body = row.bodies[side];
+            const double* of_body = g + 12 * side;
+            const Vector3 force{of_body[0], of_body[1], of_body[2]};
+            const auto moment_about = [&](const Vector3& point) {
+                Vector3 moment{};
+                for (int i = 1; i < 4; ++i) {
+                    const double* column = of_body + 3 * i;
+                    moment += cross(X[body].column(i),
+                                    Vector3{column[0], column[1], column[2]} - point[i - 1] * force);
+                }
+                return (1 / length_) * moment;
+            };
+            const auto place = std::ranges::find(part.bodies, body) - part.bodies.begin();
+            double* load = part.loads.data() + 6 * (r * n_bodies + place);
+            const Vector3 moment = moment_about(poles_[body]);
+            for (int i = 0; i < 3; ++i) load[i] = force[i], load[3 + i] = moment[i];
+            if (body != joint.second) continue;
+            const Vector3 torque = moment_about(joint.point_second);
+            for (int i = 0; i < 3; ++i)
+                part.reactions[6 * r + i] = -force[i], part.reactions[6 * r + 3 + i] = -torque[i];
+        }
+    }
+    for (int r = 0; r < n; ++r)
+        for (int k = 0; k <= r; ++k) {
+            double sum = 0;
+            for (int i = 0; i < 6; ++i) sum += part.reactions[6 * r + i] * part.reactions[6 * k + i];
+            part.square[r * n + k] = sum;
+        }
+}
+
+/// What a joint adds to G^T M^-1 G.
+void LeastLoads::add(Part& part)
+{
+    const int n = part.n_rows, n_columns = 6 * static_cast<int>(part.bodies.size());
+    for (int r = 0; r < n; ++r) {
+        double* to = part.scaled.data() + r * n_columns;
+        std::copy_n(part.loads.data() + r * n_columns, n_columns, to);
+        for (int k = 0; k < r; ++k)
+            for (int c = 0; c < n_columns; ++c)
+                to[c] -= part.square[r * n + k] * part.scaled[k * n_columns + c];
+        for (int c = 0; c < n_columns; ++c) to[c] /= part.square[r * n + r];
+    }
+    for (std::size_t b = 0; b < part.bodies.size(); ++b)
+        for (int i = 0; i < 6; ++i) {
+            const int at = 6 * static_cast<int>(b) + i;
+            double* to = line(6 * part.bodies[b] + i);
+            for (int r = 0; r < n; ++r) {
+                const double* scaled = part.scaled.data() + r * n_columns;
+                if (scaled[at] == 0) continue;
+                for (std::size_t a = 0; a <= b; ++a)
+                    for (int c = 0; c < (a < b ? 6 : i + 1); ++c)
+                        to[6 * part.bodies[a] + c] += scaled[at] * scaled[6 * a + c];
+            }
+        }
+}
+
+/// L of L L^T, where lines of what is free are zero. False: what is free is not clear.
+bool LeastLoads::factorise()
+{
+    int n_held = 0;
+    for (int i = 0; i < static_cast<int>(first_.size()); ++i) {
+        double* row = line(i);
+        const double square = row[i];
+        double pivot = square;
+        for (int k = first_[i]; k < i; ++k) {
+            const double* above = line(k);
+            double sum = row[k];
+            for (int m = std::max(first_[i], first_[k]); m < k; ++m) sum -= row[m] * above[m];
+            row[k] = above[k] > 0 ? sum / above[k] : 0;
+            pivot -= row[k] * row[k];
+        }
+        if (square == 0 || pivot <= free_pivot * square) {
+            std::fill(row + first_[i], row + i + 1, 0.0);
+            continue;
+        }
+        if (!(pivot >= held_pivot * square)) return false;
+        row[i] = std::sqrt(pivot);
+        ++n_held;
+    }
+    return n_held == n_independent_;
+}
+
+void LeastLoads::solve(double* y) const
+{
+    const int n = static_cast<int>(first_.size());
+    for (int i = 0; i < n; ++i) {
+        const double* row = line(i);
+        double sum = y[i];
+        for (int k = first_[i]; k < i; ++k) sum -= row[k] * y[k];
+        y[i] = row[i] > 0 ? sum / row[i] : 0;
+    }
+    for (int i = n; i-- > 0;) {
+        const double* row = line(i);
+        y[i] = row[i] > 0 ? y[i] / row[i] : 0;
+        for (int k = first_[i]; k < i; ++k) y[k] -= row[k] * y[i];
+    }
+}
+
+/// push += factor G^T lambda
+void LeastLoads::add_push(const double* multipliers, double factor, std::vector<double>& push) const
+{
+    for (const Part& part : parts_) {
+        const double* load = part.loads.data();
+        for (int r = 0; r < part.n_rows; ++r)
+            for (const int body : part.bodies)
+                for (int i = 0; i < 6; ++i)
+                    push[6 * body + i] += factor * multipliers[part.first_row + r] * *load++;
+    }
+}
+
+/// lambda += M^-1 G (G^T M^-1 G)^-1 push. Returns how large the reactions are that this adds.
+double LeastLoads::add_least(const std::vector<double>& push)
+{
+    double largest = 0;
+    y_ = push;
+    solve(y_.data());
+    for (Part& part : parts_) {
+        const double* scaled = part.scaled.data();
+        const int n = part.n_rows;
+        for (int r = 0; r < n; ++r) {
+            double sum = 0;
+            for (const int body : part.bodies)
+                for (int i = 0; i < 6; ++i) sum += y_[6 * body + i] * *scaled++;
+            part.sums[r] = sum;
+            largest = std::max(largest, std::abs(sum));
+            if (std::isnan(sum)) return sum;
+        }
+        for (int r = n; r-- > 0;) {
+            const double of_row = part.sums[r] /= part.square[r * n + r];
+            for (int k = 0; k < r; ++k) part.sums[k] -= part.square[r * n + k] * of_row;
+            lambda_[part.first_row + r] += of_row;
+        }
+    }
+    return largest;
+}
+
+bool LeastLoads::find_set(const double* multipliers, Reaction* reactions)
+{
+    std::ranges::fill(lambda_, 0.0);
+    std::ranges::fill(push_, 0.0);
+    add_push(multipliers, 1, push_);
+    const double size = add_least(push_);
+    left_ = push_;
+    add_push(lambda_.data(), -1, left_);
+    if (!(add_least(left_) <= most_of_second_pass * size)) return false;
+    for (std::size_t j = 0; j < parts_.size(); ++j) {
+        const Part& part = parts_[j];
+        Reaction reaction;
+        for (int r = 0; r < part.n_rows; ++r)
+            for (int i = 0; i < 3; ++i) {
+                const double lambda = lambda_[part.first_row + r];
+                reaction.force[i] += lambda * part.reactions[6 * r + i];
+                reaction.torque[i] += lambda * length_ * part.reactions[6 * r + 3 + i];
+            }
+        reactions[j] = reaction;
+    }
+    return true;
+}
+
+}   // namespace livens
