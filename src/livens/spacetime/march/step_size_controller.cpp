@@ -47,9 +47,7 @@ double velocity_jump_of(Points points, int degree, double error)
 
 StepSizeController::StepSizeController(Points points, int degree, double tolerance, double first_length,
                                        std::vector<double> stops)
-    : points_(points), degree_(degree),
-      share_(safety * power(tolerance / local_error(points, degree, 1), 1 / order(points, degree))),
-      length_(first_length),
+    : points_(points), degree_(degree), tolerance_(tolerance), length_(first_length),
       largest_jump_(
           std::min(acceptable_velocity_jump, velocity_jump_of(points, degree, refused_above * tolerance))),
       stops_(std::move(stops))
@@ -94,12 +92,10 @@ double StepSizeController::largest_jump(double start, double end) const
     return is_sampled ? std::min(largest_jump_, sampled_.second) : largest_jump_;
 }
 
-/// length (tolerance / C_p J^q)^(1 / order): of the scale at which an element would see nothing.
-double StepSizeController::suggestion(double scale) const { return share_ * scale; }
-
-double StepSizeController::scale_of(double length, double jump) const
+double StepSizeController::suggestion(double length, double jump) const
 {
-    return length * power(jump, -1.0 / (degree_ + 1));
+    const double error = local_error(points_, degree_, jump);
+    return length * safety * power(tolerance_ / error, 1 / order(points_, degree_));
 }
 
 /// By how much the next scale will be smaller than this one, if scales go on as they do. The smaller of the
@@ -120,9 +116,8 @@ void StepSizeController::accepted(double length, double jump, int steps, bool ha
     const bool is_rounding = jump < 100 * least_jump;
     regained_ *= regain;
     blind_length_ *= regained_;
-    const double scale = scale_of(length, std::max(jump, least_jump));
-    const double trend = is_rounding ? 1 : trend_to(scale);
-    length_ = is_rounding ? most : std::clamp(trend * suggestion(scale), shrink * length, most);
+    const double trend = is_rounding ? 1 : trend_to(length * power(jump, -1.0 / (degree_ + 1)));
+    length_ = is_rounding ? most : std::clamp(trend * suggestion(length, jump), shrink * length, most);
     length_ = std::min(length_, std::max(blind_length_, length));
     if (has_factor && length_ > length && length_ < worth_a_factor * length) length_ = length;
     last_refused_.first -= length;
@@ -130,7 +125,7 @@ void StepSizeController::accepted(double length, double jump, int steps, bool ha
     if (is_rounding && tells_length_) return;
     if (!is_rounding && !tells_length_) sum_of_scales_ = n_accepted_ = 0;
     tells_length_ = !is_rounding;
-    sum_of_scales_ += logarithm(scale);
+    sum_of_scales_ += logarithm(length) - logarithm(std::max(jump, least_jump)) / (degree_ + 1);
     ++n_accepted_;
 }
 
@@ -150,7 +145,7 @@ bool StepSizeController::rejected(double length, double jump, double most)
         regained_ = 1;
     }
     const double whole =
-        std::min(suggestion(scale_of(length, jump)), 0.9 * length * power(most / jump, 1.0 / (degree_ + 1)));
+        std::min(suggestion(length, jump), 0.9 * length * power(most / jump, 1.0 / (degree_ + 1)));
     length_ = is_lie ? 0.5 * length : std::clamp(whole, shrink * length, 0.9 * length);
     last_refused_.first = length;
     last_refused_.second = length_;
@@ -163,14 +158,11 @@ bool StepSizeController::ascends() const
     return length_ > 4 * std::numeric_limits<double>::epsilon() * latest;
 }
 
-double StepSizeController::mean_scale() const { return exponential(sum_of_scales_ / n_accepted_); }
-
-double StepSizeController::mean_length() const { return n_accepted_ == 0 ? 0 : suggestion(mean_scale()); }
-
 double StepSizeController::mean_length(int degree, double tolerance) const
 {
     if (n_accepted_ == 0) return 0;
-    return safety * mean_scale() * power(velocity_jump_of(points_, degree, tolerance), 1.0 / (degree + 1));
+    const double scale = exponential(sum_of_scales_ / n_accepted_);
+    return safety * scale * power(velocity_jump_of(points_, degree, tolerance), 1.0 / (degree + 1));
 }
 
 double StepSizeController::mean_stop() const

@@ -53,7 +53,7 @@ public:
     double end() const { return stops_.back(); }
     /// Length that the motion would have allowed up to here without any stops, and that of elements of
     /// another degree and tolerance (geometric means); 0: nothing was accepted yet.
-    double mean_length() const;
+    double mean_length() const { return mean_length(degree_, tolerance_); }
     double mean_length(int degree, double tolerance) const;
     /// By some jump above rounding, not lower bounds alone.
     bool tells_length() const { return tells_length_; }
@@ -61,15 +61,12 @@ public:
     double mean_stop() const;
 
 private:
-    double suggestion(double scale) const;
-    double scale_of(double length, double jump) const;
-    double mean_scale() const;
+    double suggestion(double length, double jump) const;
     double trend_to(double scale);
 
     Points points_;
     int degree_;
-    double share_;   // of the scale at which an element would see nothing: what loses the tolerance
-    double length_, largest_jump_;
+    double tolerance_, length_, largest_jump_;
     double blind_length_ = std::numeric_limits<double>::infinity(), regained_ = 1;
     std::vector<double> stops_, left_;                 // ascending
     std::pair<std::vector<double>, double> sampled_;   // stops that may be left, error

@@ -19,8 +19,9 @@ constexpr double worse = 1.3;              // than the step before
 constexpr double free_contraction = 0.6;   // of free bodies, whose steps cost a small part of a factor
 constexpr int most_slow_steps = 2,
               most_slow_factors = 5,   // each of these steps is followed by a new factor
-    most_slow_patient = 10,            // every second one is
+    most_slow_patient = 6,             // a single one is not
     most_kernel_steps = 14;
+constexpr double patient_tolerance = 1e-13;   // what has to come to rounding wants a factor that fits
 constexpr int most_combinations = 150, most_slow_combinations = 20;
 constexpr double hopeless_step = 10;      // lengths or radians
 constexpr double smallest_step = 1e-18;   // likewise: nothing moves
@@ -80,7 +81,9 @@ struct Shrinking {
             has_slopes ? std::max({contraction, contraction_before, least_rate}) : contraction;
         // steps that were seen to shrink, and shrink no more, have met their rounding
         const auto is_noise = [&] {
-            return step <= std::max(allowed, rounding * motion) || sizes.rows <= rows_rounding ||
+            // with an old factor a slow step is not yet one that shrinks no more
+            const double least = is_patient ? share_of_tolerance * allowed : allowed;
+            return step <= std::max(least, rounding * motion) || sizes.rows <= rows_rounding ||
                    (step <= rounding_of_places &&
                     sizes.rows <= std::max(joints_rounding, rounding_of_rows * sums()));
         };
@@ -288,7 +291,12 @@ bool MarchKernel::solve(const WindowLayout& layout, const InstantState& start, c
     };
     // Single steps are slow with a good factor, too, as the first ones, which put nodes onto their joints;
     // and a factor costs as much as many steps.
-    const auto tries_slopes = [&] { return tries(Steps::patient) || tries(Steps::by_tangent); };
+    const bool may_wait = options.tolerance >= patient_tolerance;
+    const auto tries_slopes = [&] {
+        const bool was_kept = choice_.is_kept();
+        return (may_wait && tries(Steps::patient)) || tries(Steps::by_tangent) ||
+               (!may_wait && was_kept && tries(Steps::by_tangent));
+    };
     const bool was_slow = choice_.last_steps() > most_kernel_steps;
     bool is_done = choice_.by_tangent() && tries_slopes();
     if (!is_done && !choice_.by_tangent() && !(is_large && was_slow))
