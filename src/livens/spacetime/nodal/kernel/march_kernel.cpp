@@ -21,7 +21,7 @@ constexpr int most_slow_steps = 2,
               most_slow_factors = 5,   // each of these steps is followed by a new factor
     most_slow_patient = 6,             // a single one is not
     most_kernel_steps = 14;
-constexpr double patient_tolerance = 1e-13;   // what has to come to rounding wants a factor that fits
+constexpr double patient_tolerance = 1e-14;   // what has to come to rounding wants a factor that fits
 constexpr int most_combinations = 150, most_slow_combinations = 20;
 constexpr double hopeless_step = 10;      // lengths or radians
 constexpr double smallest_step = 1e-18;   // likewise: nothing moves
