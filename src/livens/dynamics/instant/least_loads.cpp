@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// docs/theory.md, "Reactions of redundant joints": the least sum by the wrenches on bodies.
+// The least sum by the wrenches on bodies: lambda = M^-1 G y, of which y is found by a factor of G^T M^-1 G.
 #include "livens/dynamics/instant/least_loads.h"
 
 #include <algorithm>

@@ -64,8 +64,7 @@ public:
     NeighbourElements(const Model& model, Prepared& prepared, const Method& method, const Ends& closed,
                       const Motion& motion);
 
-    /// From degree 3 on, rows and inertias that the kernel knows, no large mechanism: else neighbours are
-    /// marched by windows.
+    /// From degree 3 on, rows and inertias that the kernel knows: else neighbours are marched by windows.
     bool serves() const { return serves_; }
     /// A state at the start of the next element that is opened, where `one` is beside the known motion by
     /// `share` of what it was. Off its joints by no more than what bends it is taken as it is. False: joints

@@ -19,9 +19,7 @@ constexpr double worse = 1.3;              // than the step before
 constexpr double free_contraction = 0.6;   // of free bodies, whose steps cost a small part of a factor
 constexpr int most_slow_steps = 2,
               most_slow_factors = 5,   // each of these steps is followed by a new factor
-    most_slow_patient = 6,             // a single one is not
     most_kernel_steps = 14;
-constexpr double patient_tolerance = 1e-13;   // what has to come to rounding wants a factor that fits
 constexpr int most_combinations = 150, most_slow_combinations = 20;
 constexpr double hopeless_step = 10;      // lengths or radians
 constexpr double smallest_step = 1e-18;   // likewise: nothing moves
@@ -51,7 +49,7 @@ const lanes::Functions* functions_of(const ModelTables& tables, const ElementRul
 struct Shrinking {
     double tolerance;
     bool has_contracted;   // at first: the guess may be right to rounding
-    bool has_slopes = false, is_patient = false;
+    bool has_slopes = false;
     // Known of steps by slopes: of loads, and with joints' forces.
     double rows_rounding = 0, joints_rounding = 0;
     int n_steps = 0, n_slow = 0, n_hopeless = 0;
@@ -81,9 +79,7 @@ struct Shrinking {
             has_slopes ? std::max({contraction, contraction_before, least_rate}) : contraction;
         // steps that were seen to shrink, and shrink no more, have met their rounding
         const auto is_noise = [&] {
-            // with an old factor a slow step is not yet one that shrinks no more
-            const double least = is_patient ? share_of_tolerance * allowed : allowed;
-            return step <= std::max(least, rounding * motion) || sizes.rows <= rows_rounding ||
+            return step <= std::max(allowed, rounding * motion) || sizes.rows <= rows_rounding ||
                    (step <= rounding_of_places &&
                     sizes.rows <= std::max(joints_rounding, rounding_of_rows * sums()));
         };
@@ -96,10 +92,7 @@ struct Shrinking {
         has_contracted = has_contracted || !is_slow;
         n_slow += is_slow ? 1 : 0;
         n_hopeless += is_hopeless ? 1 : 0;
-        const int most_hopeless = is_patient   ? most_slow_patient
-                                  : has_slopes ? most_slow_factors
-                                               : most_slow_steps;
-        return is_done || n_hopeless < most_hopeless;
+        return is_done || n_hopeless < (has_slopes ? most_slow_factors : most_slow_steps);
     }
     /// The same of combined steps, which do not shrink one by one; `left` is what is proposed.
     bool approach(double left, const lanes::Sizes& sizes)
@@ -188,7 +181,7 @@ const lanes::Values& MarchKernel::first_row()
 bool MarchKernel::propose(const WindowLayout& layout, Steps kind)
 {
     const lanes::Pattern& pattern = pattern_->view();
-    if (kind == Steps::by_tangent || kind == Steps::patient) {
+    if (kind == Steps::by_tangent) {
         if (!choice_.is_kept()) {
             functions_->interpolate(pattern, start_->values(), nodes_.values(), lane_rule_.in_lanes());
             const bool is_good = choice_.tangent().factorise(layout, *start_, nodes_.values());
@@ -215,11 +208,9 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
     const int most = is_accelerated ? most_combinations : std::min(few, options.max_iterations);
     lanes::Sizes sizes;
     Shrinking progress{std::min(options.tolerance, widest_tolerance), follows};
-    progress.is_patient = kind == Steps::patient;
-    const bool has_slopes = progress.has_slopes = progress.is_patient || kind == Steps::by_tangent;
+    progress.has_slopes = kind == Steps::by_tangent;
     if (is_accelerated) acceleration_.begin(static_cast<std::size_t>(pattern.n_twists * functions_->width));
     double moved = 0, pivot = 0;   // since the factor was made, lengths and radians; its own, squared
-    int n_slow = 0;                // with the factor of slopes at hand
     for (int steps = 0;; ++steps) {
         functions_->configure(pattern, from, nodes);
         const double still_fits = progress.is_done ? fits_at_end : fits_on_the_way;
@@ -236,7 +227,7 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
         if (progress.is_done) break;
         if (steps == most) return false;
         if (!propose(layout, kind)) return false;
-        if (has_slopes) progress.know_terms(sizes.terms, choice_.tangent().slopes());
+        if (kind == Steps::by_tangent) progress.know_terms(sizes.terms, choice_.tangent().slopes());
         const double left = is_accelerated ? size_of_proposal() : 0;
         if (is_accelerated) acceleration_.apply(nodes.step);
         functions_->move(pattern, nodes, lane_rule_.in_lanes(), sizes);
@@ -250,13 +241,11 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
         if (!goes_on && kind == Steps::free) choice_.gave_up(progress.contraction, layout.h(0));
         if (!goes_on) return false;
         const bool is_slow = !progress.is_done && progress.contraction > slow_contraction;
-        n_slow += has_slopes && is_slow ? 1 : 0;   // rounding says nothing of it
-        if (n_slow > (progress.is_patient ? 1 : 0)) choice_.forget_factor();
-        if (!choice_.is_kept()) n_slow = 0;
+        if (kind == Steps::by_tangent && is_slow) choice_.forget_factor();   // rounding says nothing of it
     }
     has_near_factor_ = moved <= fits_for_next * pivot;
     report = progress.report(sizes, start.momentum);
-    report.took_slopes = has_slopes;
+    report.took_slopes = kind == Steps::by_tangent;
     report.slope_factors = choice_.n_factors();
     return std::min(pivot, from.pivots[0]) > least_pivot * least_pivot;   // false: also no number
 }
@@ -282,25 +271,18 @@ bool MarchKernel::solve(const WindowLayout& layout, const InstantState& start, c
     };
     const auto tries = [&](Steps kind) {
         is_solved_ = iterates(kind);
-        const bool has_slopes = kind != Steps::free;
-        choice_.took(is_solved_ ? report.iterations : most_kernel_steps, is_solved_, has_slopes);
-        const bool is_by_tangent = is_solved_ && has_slopes;
+        choice_.took(is_solved_ ? report.iterations : most_kernel_steps, is_solved_,
+                     kind == Steps::by_tangent);
+        const bool is_by_tangent = is_solved_ && kind == Steps::by_tangent;
         report.is_dearer_than_short = is_by_tangent && choice_.is_dearer_than_short(report.slope_factors);
-        report.has_dear_factor = is_by_tangent && choice_.is_dear();
+        report.has_dear_factor = is_solved_ && kind == Steps::by_tangent && choice_.is_dear();
         return is_solved_;
     };
-    // Single steps are slow with a good factor, too, as the first ones, which put nodes onto their joints;
-    // and a factor costs as much as many steps.
-    const bool may_wait = options.tolerance >= patient_tolerance;
-    const auto tries_slopes = [&] {
-        const bool was_kept = choice_.is_kept();
-        return (may_wait && tries(Steps::patient)) || tries(Steps::by_tangent) ||
-               (!may_wait && was_kept && tries(Steps::by_tangent));
-    };
-    const bool was_slow = choice_.last_steps() > most_kernel_steps;
-    bool is_done = choice_.by_tangent() && tries_slopes();
+    const bool was_kept = choice_.is_kept(), was_slow = choice_.last_steps() > most_kernel_steps;
+    bool is_done =
+        choice_.by_tangent() && (tries(Steps::by_tangent) || (was_kept && tries(Steps::by_tangent)));
     if (!is_done && !choice_.by_tangent() && !(is_large && was_slow))
-        is_done = tries(Steps::free) || tries_slopes();
+        is_done = tries(Steps::free) || tries(Steps::by_tangent);
     if (is_large && !is_done) {
         is_solved_ = iterate(layout, start, options, Steps::combined, report);
         choice_.took(is_solved_ ? report.iterations : most_kernel_steps, is_solved_, false);

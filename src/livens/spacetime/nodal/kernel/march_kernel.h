@@ -75,8 +75,7 @@ private:
 
     void use(const InstantState& start);
     void evaluate_loads(const WindowLayout& layout);
-    /// By a tangent that is made anew after each slow step, or patiently after every second one.
-    enum class Steps { free, patient, by_tangent, combined };
+    enum class Steps { free, by_tangent, combined };
     bool iterate(const WindowLayout& layout, const InstantState& start, const NewtonOptions& options,
                  Steps kind, NewtonReport& report);
     /// Numbers, gradients and factor of the row in lane 0.
