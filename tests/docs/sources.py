@@ -37,6 +37,7 @@ TIES = [
     ("Where elements lose less than $«10^{-4}»$ of the error together", f"{TIME}/accuracy/between_ends.cpp", r"double nothing = ([^;]+);"),
     ("differences with steps of $«10^{-3}»$ lengths or rad", f"{TIME}/march/end_point.cpp", r"step_of_places = ([^;]+);"),
     ("ends on both sides, until that is less than $«10^{-13}»$ of the element", f"{TIME}/phases/phase_chain.cpp", r"zero - now\) <= std::max\(([\de-]+) \* \(end - start\)"),
+    ("a stop at which bodies are (within $«10^{-12}»$)", f"{TIME}/phases/contacts.h", r"touching_stop = ([^;]+);"),
     ("the part up to the stop is taken, by bisection to $«10^{-12}»$ of the row's scale", "src/livens/statics/equilibrium.cpp", r"double passed = ([^;]+);"),
     ("rows that push with more than $«10^{-9}»$ of all weights and loads", "src/livens/statics/resting_stops.cpp", r"double no_force = ([^;]+);"),
     ("times the root of the number of elements; and $«10^{-13}»$ of the element's length", f"{TIME}/phases/event_watch.cpp", r"double found_to = ([^;]+);"),
