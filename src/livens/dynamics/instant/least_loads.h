@@ -11,6 +11,17 @@
 
 namespace livens::inline dynamics_internal {
 
+/// Rows of a joint and bodies that they touch. Moments are by the length of the model.
+struct LoadsOfJoint {
+    int first_row = 0, n_rows = 0;
+    std::vector<int> bodies{};
+    std::vector<double> reactions{};   ///< on the second body about the joint's point, 6 numbers a row
+    std::vector<double> square{};      ///< Cholesky factor of their products
+    std::vector<double> loads{};       ///< on the bodies about their poles, 6 numbers each, row by row
+    std::vector<double> scaled{};      ///< the inverse factor times them
+    std::vector<double> sums{};        ///< one a row
+};
+
 /// What least_reactions() says of forces and torques, without what it says of which of them are unique, for a
 /// tenth of the work. With M the sum of squares joint by joint, lambda = M^-1 G y and
 /// (G^T M^-1 G) y = G^T lambda_given have the least sum among all multipliers that move the bodies alike, and
@@ -27,16 +38,7 @@ public:
     const Reaction* find(double t, std::span<const Matrix34> X, std::span<const double> multipliers);
 
 private:
-    /// Rows of a joint and bodies that they touch. Moments are by the length of the model.
-    struct Part {
-        int first_row, n_rows;
-        std::vector<int> bodies;
-        std::vector<double> reactions;   // on the second body about the joint's point, 6 numbers a row
-        std::vector<double> square;      // Cholesky factor of their products
-        std::vector<double> loads;       // on the bodies about their poles, 6 numbers each, row by row
-        std::vector<double> scaled;      // the inverse factor times them
-        std::vector<double> sums;        // one a row
-    };
+    using Part = LoadsOfJoint;
 
     Part part_of(int joint);
     void find_profile();
