@@ -2067,4 +2067,4 @@ livens_mutant(NAME stop_that_pulls
               OLD [[if ((*back)[k] > 0 &&]]
               NEW [[if (false &&]]
               TESTS_OF unit_dynamics
-              MUST_FAIL Impact.FulfilsItsLawForAnyMassesAndSpeeds)
+              MUST_FAIL Impact.LetsGoOfStopsThatWouldPull)
