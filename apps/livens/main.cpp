@@ -7,6 +7,9 @@
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "arguments.h"
 #include "console.h"
@@ -27,6 +30,16 @@ void fill_standard_streams()
             // The lowest free number is this one; read-only, so that writing still fails as it should.
             [[maybe_unused]] const int opened = ::open("/dev/null", O_RDONLY);
         }
+}
+
+/// Of glibc: what is large goes back to the system when it is freed. It would keep holes of any size once
+/// arrays as large have come and gone, and what a run takes at most would depend on their order.
+void return_large_memory()
+{
+#ifdef __GLIBC__
+    constexpr int large = 1 << 20;   // bytes
+    ::mallopt(M_MMAP_THRESHOLD, large);
+#endif
 }
 
 void apply_layout(Arguments& a)
@@ -92,6 +105,7 @@ int parsed_main(int n, char** arguments)
 int main(int n, char** arguments)
 {
     fill_standard_streams();
+    return_large_memory();
     ignore_write_signals();
     Common common;
     common.json = asks_for_json(n, arguments);

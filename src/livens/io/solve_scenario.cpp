@@ -171,8 +171,9 @@ void tell_limits(const Scenario& scenario, Run& run)
 void tell_sizes(const Model& model, Run& run)
 {
     constexpr double far = 1e3;
+    const bool has_states = std::ranges::any_of(model.bodies(), &Body::holds_states);
     std::vector<NamedState> most;
-    for (int e = 0; e <= run.motion.n_elements() && run.motion.n_elements() > 0; ++e) {
+    for (int e = 0; has_states && e <= run.motion.n_elements() && run.motion.n_elements() > 0; ++e) {
         const std::vector<NamedState> now = states_in(model, run.motion.at_end(e).V);
         if (most.empty()) most = now;
         for (std::size_t k = 0; k < now.size(); ++k)
