@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -31,6 +32,17 @@ Columns last_of(const Pivoted& qr, Eigen::Index n)
     Columns Q = Columns::Identity(qr.rows(), qr.rows()).rightCols(n);
     if (Q.size() > 0) Q.applyOnTheLeft(qr.householderQ());
     return Q;
+}
+
+/// Parts beside each other; those that are empty have no place in memory.
+template <class Whole>
+void put_beside(Whole& whole, std::initializer_list<Columns> parts)
+{
+    Eigen::Index at = 0;
+    for (const Columns& part : parts) {
+        if (part.size() > 0) whole.middleCols(at, part.cols()) = part;
+        at += part.cols();
+    }
 }
 
 /// Rows and columns that see each other, and no others: an exact zero stays one, as it does in elimination.
@@ -83,7 +95,7 @@ Columns beside(const std::vector<MatrixBlock>& blocks, const std::vector<Columns
     for (const Columns& part : parts) all += part.cols();
     Columns whole = Columns::Zero(n, all);
     for (std::size_t b = 0; b < blocks.size(); ++b) {
-        for (Eigen::Index i = 0; i < parts[b].rows(); ++i)
+        for (Eigen::Index i = 0; parts[b].cols() > 0 && i < parts[b].rows(); ++i)
             whole.row(blocks[b].rows[i]).segment(at, parts[b].cols()) = parts[b].row(i);
         at += parts[b].cols();
     }
@@ -119,7 +131,7 @@ RowSums sums_of(const Columns& A, Eigen::Index n1, Eigen::Index n2)
         rest.push_back(Columns::Identity(n, n));
         if (k == 0) continue;
         Columns both(n, k);
-        both << sums[0][b], sums[1][b];
+        put_beside(both, {sums[0][b], sums[1][b]});
         const Pivoted qr(both);
         if (k <= n && qr.matrixR().diagonal().cwiseAbs().minCoeff() > least_apart)
             rest.back() = last_of(qr, n - k);
@@ -256,7 +268,7 @@ bool RankBorders::solve_borders()
         Columns next(p.n_of_next, p.n_behind);
         ranks_.receive(here + 1, numbers_in(next));
         Columns transposed(p.n_behind, p.n_behind_sums + p.n_of_next);
-        transposed << p.behind.seen.transpose(), next.transpose();
+        put_beside(transposed, {p.behind.seen.transpose(), next.transpose()});
         is_done = transposed.allFinite() && p.both.factorise(transposed);
         p.behind.free = is_done ? p.both.free() : Columns::Identity(p.n_behind, p.n_behind);
     }
@@ -292,8 +304,8 @@ bool RankBorders::make_chain(const RowsBetweenBorders& rows)
     p.before.rows = p.sums.transpose() * p.A.leftCols(p.n_before);
     p.behind.rows = p.sums.transpose() * p.A.middleCols(p.n_before, p.n_behind);
     RowByRow values(k, n1 + n2 + p.n_others);
-    values << p.before.rows * p.before.free, p.behind.rows * p.behind.free,
-        p.sums.transpose() * p.A.rightCols(m - p.n_before - p.n_behind);
+    put_beside(values, {p.before.rows * p.before.free, p.behind.rows * p.behind.free,
+                        p.sums.transpose() * p.A.rightCols(m - p.n_before - p.n_behind)});
     left.values.assign(values.data(), values.data() + values.size());
     p.z.resize(left.columns.size());
     p.A.resize(0, 0);
@@ -316,7 +328,8 @@ void RankBorders::solve(std::span<const double> b, std::span<double> x)
     if (!ranks_.is_last()) {
         Numbers next(p.n_of_next), of_both(p.n_behind_sums + p.n_of_next);
         ranks_.receive(here + 1, numbers_in(next));
-        of_both << p.behind.sums.transpose() * right, next;
+        of_both.head(p.n_behind_sums) = p.behind.sums.transpose() * right;
+        of_both.tail(p.n_of_next) = next;
         p.both.solve(of_both, p.behind.found);
         ranks_.send(here + 1, numbers_in(p.behind.found));
     }
