@@ -193,7 +193,8 @@ void expect_the_same(const Case& one, const std::vector<int>& of_ranks)
             EXPECT_EQ(s.motion.n_elements(), part.work.n_formed);
             EXPECT_LT(distance(serial.motion, s.motion, next), 1e-12);
             EXPECT_EQ(s.report.unknowns, serial.report.unknowns);
-            EXPECT_LE(std::abs(s.report.newton_iterations - serial.report.newton_iterations), 1);
+            // the last steps are at rounding, of which each order of sums has its own
+            EXPECT_LE(std::abs(s.report.newton_iterations - serial.report.newton_iterations), 2);
             ASSERT_EQ(s.numbers.values.size(), serial.numbers.values.size());
             for (std::size_t i = 0; i < s.numbers.values.size(); ++i)
                 EXPECT_NEAR(s.numbers.values[i], serial.numbers.values[i], 1e-12);
