@@ -2045,11 +2045,11 @@ livens_mutant(NAME reactions_by_number
               TESTS_OF unit_io
               MUST_FAIL ReactionLaws.ReadStops)
 
-# An impact that does not go on through bodies that touch without a force.
-livens_mutant(NAME impact_stays_at_its_pair
-              FILE spacetime/phases/phase_chain.cpp
-              OLD [[events.insert(events.end(), beside.begin(), beside.end());]]
-              NEW [[(void)0;]]
+# An impact that goes on through bodies that touch, by a law that nobody named.
+livens_mutant(NAME impact_handed_on
+              FILE spacetime/phases/contacts.cpp
+              OLD [[is_handed_on = true;]]
+              NEW [[is_handed_on = false;]]
               TESTS_OF unit_io
               MUST_FAIL Stops.AreMetThroughBodiesThatTouch)
 
