@@ -1926,8 +1926,8 @@ livens_mutant(NAME matrices_drawn_out_without_values
 
 # The instant of an event left where the polynomial's slope has it, which is of a lower order than the state.
 livens_mutant(NAME event_by_the_polynomial
-              FILE spacetime/phases/phase_chain.cpp
-              OLD [[if (std::abs(zero - now) <= std::max(1e-13 * (end - start), 4e-16 * std::abs(now))) break;]]
+              FILE spacetime/phases/event_end.cpp
+              OLD [[if (std::abs(zero - now) <= std::max(near_event * (end - start), of_clock * std::abs(now))) break;]]
               NEW [[if (std::abs(zero - now) <= 1e-2 * (end - start)) break;]]
               TESTS_OF unit_io
               MUST_FAIL DecidedEvents.HaveTheOrderOfStatesAlsoWhereRatesAreAskedFor)
@@ -2052,6 +2052,23 @@ livens_mutant(NAME impact_handed_on
               NEW [[is_handed_on = false;]]
               TESTS_OF unit_io
               MUST_FAIL Stops.AreMetThroughBodiesThatTouch)
+
+# What the polynomial says is about to come without the slack of stops: bodies side by side meet at each element.
+livens_mutant(NAME come_by_rounding
+              FILE spacetime/phases/event_watch.cpp
+              OLD [[return slack_[e] > 0 ? margin(e, state) > slack_[e] : holds_at(e, state);]]
+              NEW [[return holds_at(e, state);]]
+              TESTS_OF unit_io
+              MUST_FAIL Stops.AreMetThroughBodiesThatTouch)
+
+# A body that was beyond its stop before the last element is taken to be there no sooner than at its end.
+livens_mutant(NAME slack_is_no_event
+              FILE spacetime/phases/event_end.cpp
+              OLD [[                drop_last(motion);
+                return end_at_event(phase, fired, solved);]]
+              NEW [[                break;]]
+              TESTS_OF unit_io
+              MUST_FAIL Stops.PassImpactsOnOverAnyDistance)
 
 # Speeds of impacts by the row of a distance, which is of its square.
 livens_mutant(NAME speed_of_squares

@@ -31,20 +31,16 @@ struct Direction {
           own_rate(side * constraint_rate(row_of(stop), {state.t}, state.X))
     {}
 
-    template <class Rates>
-    double along_each(const Rates& rates_of_body) const
+    double along(std::span<const Matrix34> V) const
     {
         double sum = 0;
         for (int k = 0; k < gradient.bodies.size; ++k) {
-            const Matrix34 V = rates_of_body(gradient.bodies.bodies[static_cast<std::size_t>(k)]);
+            const Matrix34& of_body =
+                V[static_cast<std::size_t>(gradient.bodies.bodies[static_cast<std::size_t>(k)])];
             const Matrix34& g = gradient.by[static_cast<std::size_t>(k)];
-            for (std::size_t i = 0; i < 12; ++i) sum += g.a[i] * V.a[i];
+            for (std::size_t i = 0; i < 12; ++i) sum += g.a[i] * of_body.a[i];
         }
         return side * sum;
-    }
-    double along(std::span<const Matrix34> V) const
-    {
-        return along_each([&](int b) { return V[static_cast<std::size_t>(b)]; });
     }
     double speed(std::span<const Matrix34> V) const { return own_rate + along(V); }
     std::vector<double> as_forces(std::size_t n_bodies) const
@@ -235,22 +231,24 @@ ImpactOutcome impact(const Model& held, const State& before, std::span<const Joi
 
 double speed_apart(const Joint& stop, const State& state) { return Direction(stop, state).speed(state.V); }
 
-double acceleration_apart(const Joint& stop, const Model& held, const State& state)
+std::vector<double> accelerations_apart(std::span<const Joint> stops, const Model& held, const State& state)
 {
+    std::vector<double> apart(stops.size(), std::numeric_limits<double>::quiet_NaN());
     SettledInstant instant(held, most_rows(held, std::span(&state, 1)));
     std::vector<double> angles = state.angles;
     angles.resize(UnwrappedAngles(held).size(), 0.0);   // others come behind those of the model's loads
-    if (!instant.accelerate(state, angles, Side::right)) return std::numeric_limits<double>::quiet_NaN();
+    if (!instant.accelerate(state, angles, Side::right)) return apart;
     const std::vector<double>& X = instant.solved().X;
-    const std::vector<Matrix34> A = rates_of(instant.tables(), X, instant.solved().acceleration[1]);
+    std::vector<Matrix34> A = rates_of(instant.tables(), X, instant.solved().acceleration[1]);
     const double* centripetal = instant.system().centripetal();
-    const Direction direction(stop, state);
-    const double of_bodies = direction.along_each([&](int b) {
-        Matrix34 all = A[static_cast<std::size_t>(b)];
-        for (std::size_t i = 0; i < 12; ++i) all.a[i] += centripetal[12 * static_cast<std::size_t>(b) + i];
-        return all;
-    });
-    return of_bodies + direction.side * constraint_curvature(row_of(stop), {state.t}, state.X, state.V);
+    for (Matrix34& one : A)
+        for (double& a : one.a) a += *centripetal++;
+    for (std::size_t k = 0; k < stops.size(); ++k) {
+        const Direction direction(stops[k], state);
+        apart[k] = direction.along(A) +
+                   direction.side * constraint_curvature(row_of(stops[k]), {state.t}, state.X, state.V);
+    }
+    return apart;
 }
 
 double gap_of(const Joint& stop, const State& state)

@@ -31,8 +31,9 @@ inline constexpr std::size_t most_stops_at_once = 200;
 
 /// How fast the bodies of a stop go apart, by the sign of its open side.
 double speed_apart(const Joint& stop, const State& state);
-/// Its rate where nothing but the joints of `held` acts on them; nan: joints lose rank there.
-double acceleration_apart(const Joint& stop, const Model& held, const State& state);
+/// The rates of that for some stops, where nothing but the joints of `held` acts on their bodies; nan: joints
+/// lose rank there.
+std::vector<double> accelerations_apart(std::span<const Joint> stops, const Model& held, const State& state);
 /// How far they are apart, in units of its row.
 double gap_of(const Joint& stop, const State& state);
 

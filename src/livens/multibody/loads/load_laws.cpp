@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "livens/base/error.h"
@@ -125,12 +126,12 @@ struct Modulated {
                 coordinates[i].add_slopes(arguments, slope[i], slope[m + i], by_X, by_V);
             LoadForces unit{};
             parts.units[k].forces(arguments, unit);
-            LoadTangent of_unit(n);
             // The product rule: the factor times the unit's tangent, and the unit times the factor's slopes.
-            if (parts.units[k].depends_on_X) parts.units[k].tangent(arguments, of_unit);
+            std::optional<LoadTangent> of_unit;
+            if (parts.units[k].depends_on_X) parts.units[k].tangent(arguments, of_unit.emplace(n));
             for (std::size_t b = 0; b < 2; ++b)
                 for (std::size_t c = 0; c < n; ++c) {
-                    tangent.X[b][c] += factors[k] * of_unit.X[b][c];
+                    if (of_unit) tangent.X[b][c] += factors[k] * of_unit->X[b][c];
                     add_outer(tangent.X[b][c], unit[b], by_X[c]);
                     add_outer(tangent.V[b][c], unit[b], by_V[c]);
                 }

@@ -64,8 +64,10 @@ inline void add_block(Matrix<12, 12>& tangent, int i, int j, const Matrix3& bloc
 /// Adds the derivative of stacked columns a s by a number s with the slopes b.
 inline void add_outer(Matrix<12, 12>& tangent, const Matrix34& a, const Matrix34& b)
 {
-    for (int j = 0; j < 12; ++j)
+    for (int j = 0; j < 12; ++j) {
+        if (b.a[j] == 0) continue;   // as of most places
         for (int i = 0; i < 12; ++i) tangent(i, j) += a.a[i] * b.a[j];
+    }
 }
 
 }   // namespace livens::inline multibody_internal

@@ -31,7 +31,8 @@ bool EventLocator::moves(Window& window, double start, double end)
     const double bend = start + length * window.monitor().bend(was_found ? beyond : 1);
     is_met_ = was_found && std::abs(bend - end) <= 3 * margin;
     if (std::isinf(bend) && std::exchange(is_expected_, false)) at_ = -infinite;   // an end like others
-    if (is_met_ || std::isinf(bend) || (!was_found && end - bend <= margin) || bend - start < shortest_)
+    const double nearest = std::max(shortest_, 2 * margin);   // its end would not be behind its start
+    if (is_met_ || std::isinf(bend) || (!was_found && end - bend <= margin) || bend - start < nearest)
         return false;
     n_moves_ = was_found && start == moved_from_ ? n_moves_ + 1 : 0;
     moved_from_ = start;

@@ -4,6 +4,9 @@
 #include "livens/spacetime/nodal/element_path.h"
 
 #include <algorithm>
+#include <map>
+#include <mutex>
+#include <tuple>
 
 #include "livens/spacetime/nodal/nodes.h"
 
@@ -13,6 +16,21 @@ ElementPath::ElementPath(const ModelTables& tables, const ElementRule& rule)
     : basis_(basis_on(rule.points, rule.degree)), X_(12 * tables.bodies.size()), V_(X_),
       values_(rule.nodes.size()), slopes_(values_)
 {}
+
+/// Made once, as rules are, and they stay (element_rule()).
+void ElementPath::expect(const ElementRule& rule, const std::vector<double>& shares)
+{
+    static std::mutex in_use;
+    static auto& made = *new std::map<std::tuple<Points, int, std::vector<double>>, std::vector<KnownBasis>>;
+    const std::scoped_lock lock(in_use);
+    std::vector<KnownBasis>& all = made[{rule.points, rule.degree, shares}];
+    for (std::size_t k = all.size(); k < shares.size(); ++k) {
+        basis_.values(shares[k], values_);
+        basis_.derivatives(shares[k], slopes_);
+        all.push_back({shares[k], values_, slopes_});
+    }
+    known_ = all;   // whose place does not change
+}
 
 void ElementPath::begin(const WindowLayout& layout, const NodePositions& nodes, int e)
 {
@@ -24,8 +42,7 @@ void ElementPath::begin(const WindowLayout& layout, const NodePositions& nodes, 
 void ElementPath::go(double share, const std::vector<int>& bodies)
 {
     at_ = {start() + share * h(), Side::middle};
-    basis_.values(share, values_);
-    basis_.derivatives(share, slopes_);
+    find_basis(share);
     const double inverse = 1 / h();
     for (double& slope : slopes_) slope *= inverse;
     for (const int body : bodies) {
@@ -40,6 +57,18 @@ void ElementPath::go(double share, const std::vector<int>& bodies)
             }
         }
     }
+}
+
+void ElementPath::find_basis(double share)
+{
+    const auto known = std::ranges::lower_bound(known_, share, {}, &KnownBasis::share);
+    if (known != known_.end() && known->share == share) {
+        values_ = known->values;
+        slopes_ = known->slopes;
+        return;
+    }
+    basis_.values(share, values_);
+    basis_.derivatives(share, slopes_);
 }
 
 }   // namespace livens

@@ -2,6 +2,7 @@
 // Bodies along the polynomials of an element, between its nodes.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "livens/dynamics/rows/tables.h"
@@ -17,6 +18,8 @@ class ElementPath {
 public:
     ElementPath(const ModelTables& tables, const ElementRule& rule);
 
+    /// Shares, ascending, to which it will go in every element: their basis is found once for all paths.
+    void expect(const ElementRule& rule, const std::vector<double>& shares);
     /// Along element e from now on. References must outlive the calls of go().
     void begin(const WindowLayout& layout, const NodePositions& nodes, int e);
     /// Goes to a share, with the bodies that are named; what others have there is of no use.
@@ -28,7 +31,14 @@ public:
     double h() const { return layout_->h(element_); }
 
 private:
+    struct KnownBasis {
+        double share;
+        std::vector<double> values, slopes;
+    };
+    void find_basis(double share);
+
     LagrangeBasis basis_;
+    std::span<const KnownBasis> known_;
     const WindowLayout* layout_ = nullptr;
     const NodePositions* nodes_ = nullptr;
     int element_ = 0;

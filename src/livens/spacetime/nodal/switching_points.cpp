@@ -300,6 +300,7 @@ SwitchingPoints::SwitchingPoints(const ModelTables& tables, const ElementRule& r
     shares_beyond_ = shares_;
     for (int i = 1; i <= n / 2; ++i) shares_beyond_.push_back(1 + static_cast<double>(i) / n);
     n_looks_ = n;
+    path_.expect(rule, shares_beyond_);
 }
 
 /// Nowhere near a bend in the element itself.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
@@ -26,8 +27,11 @@ public:
     {}
 
     /// `begins`: joints that act from now on as well; of stops those that are chosen alone.
-    Model with(const std::vector<int>& begins, const std::vector<int>& stops) const
+    const Model& with(const std::vector<int>& begins, const std::vector<int>& stops)
     {
+        if (last_ && begins == begins_ && stops == chosen_) return *last_;
+        begins_ = begins;
+        chosen_ = stops;
         DecidedTimes times = times_;
         for (std::size_t j = 0; j < times.joints.size(); ++j) {
             const int joint = static_cast<int>(j);
@@ -41,13 +45,15 @@ public:
                 times.joints[j].push_back({t_, t_ + 1});
             }
         }
-        return acting_at(as_decided(model_, times), t_).model;
+        return last_.emplace(acting_at(as_decided(model_, times), t_).model);
     }
 
 private:
     const Model& model_;
     DecidedTimes times_;
     double t_;
+    std::vector<int> begins_, chosen_;   // of the last
+    std::optional<Model> last_;
 };
 
 std::string names_of(const Model& model, const std::vector<int>& joints)
@@ -156,13 +162,19 @@ private:
     {
         State behind = before_;
         behind.V = outcome_.V;
-        const std::vector<int> closed = resting_;
+        std::vector<Joint> begun;
+        for (const Contact& one : outcome_.begun) begun.push_back(model_.joints()[one.joint]);
+        std::erase_if(begun, [](const Joint& joint) { return !is_stop(joint); });
+        if (begun.empty()) return;
+        const std::vector<double> accelerations =
+            accelerations_apart(begun, held_.with(both_ways_, resting_), behind);
+        auto acceleration = accelerations.begin();
         for (Contact& one : outcome_.begun) {
             const Joint& stop = model_.joints()[one.joint];
             if (!is_stop(stop)) continue;
             const double e = stop.impact->restitution, slow = no_speed * fastest(before_, stop),
                          apart = one.is_hit ? e * one.approach : speed_apart(stop, behind),
-                         together = -acceleration_apart(stop, held_.with(both_ways_, closed), behind);
+                         together = -*acceleration++;
             const double of_rounding = slow * fastest(before_, stop) / model_.length();
             if (!(together > of_rounding) || apart < -slow) continue;   // nothing presses
             const double rebound = std::max(apart, 0.0), hop = rebound * rebound / (2 * together);
@@ -256,6 +268,14 @@ double slope_of_row(const Event& event, const State& state)
     }
     const bool is_sine = all.size() == 1 && all[0].coordinate.kind == CoordinateKind::arc_sine;
     return is_sine ? std::cos(coordinate_value(all[0].coordinate, state.X)) : 1;
+}
+
+double slack_behind(const Model& model, const Event& event, const State& reached, double touched_with)
+{
+    constexpr double more = 64, most = 1e4, clear = 4;
+    const double depth = -gap_of(model.joints()[event.action.joint], reached) / slope_of_row(event, reached);
+    return std::max(
+        {1.0, std::min(more * touched_with, most), clear * depth / rounding_of_stop(model, event)});
 }
 
 ContactOutcome meet_joints(const Model& model, const Decisions& decisions, const State& reached,

@@ -46,6 +46,11 @@ std::vector<int> stops_beside(const Model& model, const Decisions& decisions, co
 /// distance is half its square.
 double slope_of_row(const Event& event, const State& state);
 
+/// What the slack of a stop (EventWatch) becomes behind an impact, where it was met (0), or only touched with
+/// so much of it: bodies that move side by side are beyond it by rounding, which adds up. Neighbours of a
+/// motion are beyond it from the start.
+double slack_behind(const Model& model, const Event& event, const State& reached, double touched_with);
+
 /// Joints of a model with ImpactLaw that begin at a state, where what else begins or ends there has been
 /// decided. Hops lower than `lowest_hop` times the row's scale are left out: the stop closes.
 /// (docs/theory.md, "Impacts")

@@ -57,6 +57,12 @@ void refuse_shared(const Model& model, const ActingModel& acting, const ModelTab
 
 }   // namespace
 
+double rounding_of_stop(const Model& model, const Event& event)
+{
+    const bool is_distance = event.terms.coordinates.size() == 3;   // the row has squares
+    return beyond_stop * (is_distance ? model.length() : model.joints()[event.action.joint].rows[0].scale);
+}
+
 EventWatch::EventWatch(const Model& model, ActingModel acting, std::vector<bool> armed, const State& start,
                        const std::vector<double>& slack)
     : whole_(model), acting_(std::move(acting)), armed_(std::move(armed)), start_(start),
@@ -84,11 +90,8 @@ EventWatch::EventWatch(const Model& model, ActingModel acting, std::vector<bool>
             std::ranges::any_of(acting_.model.loads(), [&](const Load& l) { return l.name == watch.name; }))
             watch.name += "'";
         const int e = static_cast<int>(acting_.model.loads().size()) - first_watch_;
-        double size = is_open_stop(e) ? beyond_stop : 0;
+        double size = is_open_stop(e) ? rounding_of_stop(whole_, event) : 0;
         if (size > 0 && !slack.empty()) size *= slack[static_cast<std::size_t>(e)];
-        const bool is_distance = event.terms.coordinates.size() == 3;   // the row has squares
-        if (size > 0)
-            size *= is_distance ? whole_.length() : whole_.joints()[event.action.joint].rows[0].scale;
         slack_.push_back(size);
         if (slack_[e] > 0)
             watch.guarded = [exact = watch.guarded, by = slack_[e]](const LoadArguments& at,
@@ -251,10 +254,13 @@ std::vector<int> EventWatch::fired(const Motion& so_far)
     }
     const State now = beside(so_far, n, behind, false), by_slope = beside(so_far, n, behind, true);
     for (int e = 0; e < n_events; ++e) {
-        const bool holds_now = slack_[e] > 0 ? margin(e, now) > slack_[e] : holds_at(e, now);
+        const auto is_beyond = [&](const State& state) {
+            return slack_[e] > 0 ? margin(e, state) > slack_[e] : holds_at(e, state);
+        };
+        const bool holds_now = is_beyond(now);
         // The polynomial has it, the state will: its zero lies in the jump between both.
         const bool comes =
-            !holds_now && !held_[e] && armed_[e] && holds_at(e, by_slope) && comes_at_once(so_far, e);
+            !holds_now && !held_[e] && armed_[e] && is_beyond(by_slope) && comes_at_once(so_far, e);
         if ((holds_now && !held_[e] && armed_[e]) || comes) found.push_back(e);
         held_[e] = holds_now;
     }
@@ -264,8 +270,8 @@ std::vector<int> EventWatch::fired(const Motion& so_far)
 bool EventWatch::comes_at_once(const Motion& motion, int event) const
 {
     const Border border = border_of(motion, std::span(&event, 1));
-    return border.rate > 0 &&
-           -border.margin < at_once * motion.mesh.length(motion.n_elements() - 1) * border.rate;
+    return border.rate > 0 && slack_[event] - border.margin <
+                                  at_once * motion.mesh.length(motion.n_elements() - 1) * border.rate;
 }
 
 EventWatch::Border EventWatch::border_of(const Motion& motion, std::span<const int> events) const
@@ -286,6 +292,12 @@ EventWatch::Border EventWatch::border_of(const Motion& motion, std::span<const i
         if (std::abs(change) > rounded) break;
     }
     return {here, change / way};
+}
+
+bool EventWatch::was_beyond(const Motion& motion, std::span<const int> events) const
+{
+    const State before = motion.at_end(motion.n_elements() - 1);
+    return std::ranges::any_of(events, [&](int e) { return slack_[e] > 0 && margin(e, before) > 0; });
 }
 
 double EventWatch::rounding_at_end(const Motion& motion, int event) const

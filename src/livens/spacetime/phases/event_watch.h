@@ -13,6 +13,10 @@
 
 namespace livens::inline spacetime_internal {
 
+/// How far what leaves a stop, or slides along it, is beyond it by rounding, in units of the event's
+/// coordinate.
+double rounding_of_stop(const Model& model, const Event& event);
+
 /// The model of a phase with a load for each event that watches for it: elements end where conditions may
 /// change, as they do where laws bend. After each element the state at its end tells what has come true.
 class EventWatch {
@@ -43,6 +47,8 @@ public:
         double margin, rate;
     };
     Border border_of(const Motion& motion, std::span<const int> events) const;
+    /// Whether one of them was beyond its border where the last element began, within its slack.
+    bool was_beyond(const Motion& motion, std::span<const int> events) const;
     /// What rounding of the state at the end of a motion makes of the instant of a condition, s.
     double rounding_at_end(const Motion& motion, int event) const;
     /// Those of them that are true just behind the end; the nearest, if none is.

@@ -15,6 +15,7 @@
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/phases/contacts.h"
+#include "livens/spacetime/phases/event_end.h"
 #include "livens/spacetime/phases/event_watch.h"
 #include "livens/spacetime/phases/events.h"
 #include "livens/spacetime/phases/samplings.h"
@@ -26,7 +27,8 @@ namespace {
 /// More would be a storm: as many as that in a millionth of the time, or in all.
 constexpr int stormy = 200, most_events = 100'000, most_beside = 500;   // of a neighbour in a window
 constexpr double no_time = 1e-6;
-constexpr int most_turns = 60;
+/// Of the length of elements before a phase, where all of its own are shorter: events may come seldom again.
+constexpr double still_long = 0.125;
 
 /// One phase after the other: up to what is known beforehand, or what the motion decides.
 class Chain {
@@ -71,7 +73,7 @@ private:
         double first;   // where the phase begins
         Method method{};
         bool jumps = false;               // behind an impact
-        double length = 0;                // of the longest element of the phase before
+        double length = 0;                // of elements to begin with
         std::vector<double> ends{};       // where events have ended phases
         std::vector<double> slack{};      // of each event, see EventWatch
         std::vector<double> rounding{};   // of instants of events, where the phase has ended with them
@@ -112,7 +114,8 @@ private:
         std::vector<int> fired = std::exchange(next.report.fired, {});
         at.method = next.method;   // what was open is chosen once
         const bool is_lost = watch != nullptr && watch->lost() >= 0;
-        if (watch != nullptr && !fired.empty() && (is_lost || !end_at_event(*watch, at, fired, next)))
+        if (watch != nullptr && !fired.empty() &&
+            (is_lost || !end_at_event({*watch, at.problem, at.options, solve_phase_}, fired, next)))
             fired.clear();
         at.rounding.assign(stated_.events().size(), 0.0);
         for (const int e : fired)
@@ -122,7 +125,7 @@ private:
             next.report.status = SolveStatus::converged;   // the whole is judged, not a part of it
             next.report.message.clear();
         }
-        at.length = 0;
+        at.length *= still_long;
         for (int e = 0; e < next.motion.n_elements(); ++e) raise_to(at.length, next.motion.mesh.length(e));
         if (is_lost) {
             next.report.status = SolveStatus::not_converged;
@@ -222,49 +225,6 @@ private:
         }
     }
 
-    /// The last element is solved anew until the state at its end is where the event is: the slope of its
-    /// polynomial, by which velocities were seen on the way, is of a lower order. False: there is none.
-    bool end_at_event(const EventWatch& watch, const Way& at, std::vector<int>& fired, Solution& next) const
-    {
-        const double start = next.motion.mesh.ends[next.motion.n_elements() - 1], end = next.motion.end();
-        double low = start, high = std::numeric_limits<double>::infinity();
-        for (int i = 0; i < most_turns; ++i) {
-            const double now = next.motion.end();
-            const EventWatch::Border border = watch.border_of(next.motion, fired);
-            (border.margin > 0 ? high : low) = now;
-            double zero = border.rate > 0 ? now - border.margin / border.rate : low;
-            if (std::abs(zero - now) <= std::max(1e-13 * (end - start), 4e-16 * std::abs(now))) break;
-            if (std::isinf(high)) {   // it lies ahead, and not far
-                if (!(zero > now && zero < end + 0.1 * (end - start))) return false;
-            } else if (!(zero > low && zero < high)) {
-                zero = 0.5 * (low + high);
-            }
-            if (!(zero > start) || !solve_last(watch.model(), at, start, zero, next)) break;
-        }
-        fired = watch.holding(next.motion, fired);
-        return true;
-    }
-
-    /// The last element once more, with another end. False: it is not found, and all is as it was.
-    bool solve_last(const Model& model, const Way& at, double start, double end, Solution& next) const
-    {
-        Problem problem = at.problem;
-        problem.fired = nullptr;
-        problem.conditions.start = next.motion.at_end(next.motion.n_elements() - 1);
-        SolveOptions options = at.options;
-        options.initial = StartPolicy::project;
-        options.end_at_bends = false;
-        Solution last = solve_phase_(model, problem, TimeMesh{{start, end}}, next.method, options);
-        if (!last.report.converged() || last.motion.n_elements() == 0) return false;
-        drop_last(next.motion);
-        if (next.motion.n_elements() == 0)
-            next.motion = std::move(last.motion);
-        else
-            join(next.motion, std::move(last.motion), false);
-        next.motion.mesh.bends.push_back(next.motion.end());
-        return true;
-    }
-
     /// What events do to a state. False: the motion ends there.
     bool act(Way& at, const std::vector<int>& fired, State& reached, Solution& whole) const
     {
@@ -337,14 +297,13 @@ private:
         const EventAction& action = stated_.events()[static_cast<std::size_t>(event)].action;
         const auto of = std::ranges::find(outcome.begun, action.joint, &Contact::joint);
         if (of == outcome.begun.end()) return;
-        // Bodies that move side by side are beyond their stop by rounding, which adds up: it is only touched.
-        constexpr double more = 4, most = 1e4;
+        const Event& stated = stated_.events()[static_cast<std::size_t>(event)];
         double& slack = at.slack[static_cast<std::size_t>(event)];
         const bool is_met = of->is_hit || of->closes;
-        slack = is_met ? 1 : std::min(more * slack, most);
+        slack = slack_behind(stated_, stated, reached, is_met ? 0 : slack);
         if (!is_met) return;
         SolvedEvent one{event, at.first};
-        const double unit = slope_of_row(stated_.events()[static_cast<std::size_t>(event)], reached);
+        const double unit = slope_of_row(stated, reached);
         one.impulse = of->impulse * unit;
         if (!at.rounding.empty()) one.rounding = at.rounding[static_cast<std::size_t>(event)];
         one.speed = of->approach / unit;
