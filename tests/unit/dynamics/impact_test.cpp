@@ -37,7 +37,12 @@ struct Row {
             stops.push_back(with_stops.joints()[static_cast<std::size_t>(at)]);
         }
     }
-    ImpactOutcome meet() const { return impact(held, held.start(), stops); }
+    ImpactOutcome meet() const
+    {
+        const State start = held.start();
+        SettledInstant instant(held, most_rows(held, std::span(&start, 1)));
+        return impact(instant, start, stops);
+    }
 };
 
 TEST(Impact, OfARowOfBallsIsSharedByAllThatTouch)
@@ -116,7 +121,12 @@ struct Plate {
                 stops.push_back(with_stops.joints()[static_cast<std::size_t>(stop)]);
             }
     }
-    ImpactOutcome meet() const { return impact(held, held.start(), stops); }
+    ImpactOutcome meet() const
+    {
+        const State start = held.start();
+        SettledInstant instant(held, most_rows(held, std::span(&start, 1)));
+        return impact(instant, start, stops);
+    }
 };
 
 /// What sixteen posts bear is not unique, what it does is.

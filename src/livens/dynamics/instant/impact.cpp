@@ -187,15 +187,14 @@ private:
 
 }   // namespace
 
-ImpactOutcome impact(const Model& held, const State& before, std::span<const Joint> stops)
+ImpactOutcome impact(SettledInstant& held, const State& before, std::span<const Joint> stops)
 {
     ImpactOutcome outcome;
     outcome.stops.resize(stops.size());
     if (stops.size() > most_stops_at_once) return outcome;
-    SettledInstant instant(held, most_rows(held, std::span(&before, 1)));
-    if (!instant.settle(before)) return outcome;
-    const std::vector<double> X = instant.solved().X;
-    outcome.V = rates_of(instant.tables(), X, instant.solved().velocity);
+    if (!held.settle(before)) return outcome;
+    const std::vector<double> X = held.solved().X;
+    outcome.V = rates_of(held.tables(), X, held.solved().velocity);
     const std::size_t n = stops.size(), n_bodies = outcome.V.size();
     std::vector<Direction> directions;
     std::vector<std::vector<Matrix34>> responses;
@@ -205,8 +204,7 @@ ImpactOutcome impact(const Model& held, const State& before, std::span<const Joi
         speeds[i] = directions[i].speed(outcome.V);
         outcome.stops[i].approach = directions[i].speed(before.V);
         least[i] = stops[i].impact->restitution * std::max(-outcome.stops[i].approach, 0.0);
-        responses.push_back(
-            rates_of(instant.tables(), X, instant.response_to(directions[i].as_forces(n_bodies))));
+        responses.push_back(rates_of(held.tables(), X, held.response_to(directions[i].as_forces(n_bodies))));
     }
     std::vector<std::vector<double>> D(n, std::vector<double>(n));
     for (std::size_t i = 0; i < n; ++i)
@@ -231,16 +229,17 @@ ImpactOutcome impact(const Model& held, const State& before, std::span<const Joi
 
 double speed_apart(const Joint& stop, const State& state) { return Direction(stop, state).speed(state.V); }
 
-std::vector<double> accelerations_apart(std::span<const Joint> stops, const Model& held, const State& state)
+std::vector<double> accelerations_apart(std::span<const Joint> stops, SettledInstant& held,
+                                        const State& state)
 {
     std::vector<double> apart(stops.size(), std::numeric_limits<double>::quiet_NaN());
-    SettledInstant instant(held, most_rows(held, std::span(&state, 1)));
     std::vector<double> angles = state.angles;
-    angles.resize(UnwrappedAngles(held).size(), 0.0);   // others come behind those of the model's loads
-    if (!instant.accelerate(state, angles, Side::right)) return apart;
-    const std::vector<double>& X = instant.solved().X;
-    std::vector<Matrix34> A = rates_of(instant.tables(), X, instant.solved().acceleration[1]);
-    const double* centripetal = instant.system().centripetal();
+    angles.resize(UnwrappedAngles(*held.tables().model).size(),
+                  0.0);   // others come behind those of its loads
+    if (!held.accelerate(state, angles, Side::right)) return apart;
+    const std::vector<double>& X = held.solved().X;
+    std::vector<Matrix34> A = rates_of(held.tables(), X, held.solved().acceleration[1]);
+    const double* centripetal = held.system().centripetal();
     for (Matrix34& one : A)
         for (double& a : one.a) a += *centripetal++;
     for (std::size_t k = 0; k < stops.size(); ++k) {

@@ -26,14 +26,15 @@ struct ImpactOutcome {
 /// Moreau's law: V = argmin 1/2 |V - V_before|^2 in the mass metric with all rates of the joints of `held`,
 /// and of each stop a speed apart of at least its restitution times that together before. Of many at once no
 /// more than `most_stops_at_once` are tried.
-ImpactOutcome impact(const Model& held, const State& before, std::span<const Joint> stops);
+ImpactOutcome impact(SettledInstant& held, const State& before, std::span<const Joint> stops);
 inline constexpr std::size_t most_stops_at_once = 200;
 
 /// How fast the bodies of a stop go apart, by the sign of its open side.
 double speed_apart(const Joint& stop, const State& state);
 /// The rates of that for some stops, where nothing but the joints of `held` acts on their bodies; nan: joints
 /// lose rank there.
-std::vector<double> accelerations_apart(std::span<const Joint> stops, const Model& held, const State& state);
+std::vector<double> accelerations_apart(std::span<const Joint> stops, SettledInstant& held,
+                                        const State& state);
 /// How far they are apart, in units of its row.
 double gap_of(const Joint& stop, const State& state);
 

@@ -19,20 +19,21 @@ constexpr double no_speed = 1e-12;
 
 bool is_stop(const Joint& joint) { return joint.impact && joint.impact->open_side != 0; }
 
-/// The joints at an instant that hold both ways, with others that are chosen.
-class HeldModels {
+/// A mechanism at an instant: the joints that hold both ways, with others that are chosen.
+class HeldMechanism {
 public:
-    HeldModels(const Model& model, const Decisions& decisions, double t)
-        : model_(model), times_(decisions.times()), t_(t)
+    HeldMechanism(const Model& model, const Decisions& decisions, const State& reached)
+        : model_(model), times_(decisions.times()), reached_(reached)
     {}
 
     /// `begins`: joints that act from now on as well; of stops those that are chosen alone.
-    const Model& with(const std::vector<int>& begins, const std::vector<int>& stops)
+    SettledInstant& with(const std::vector<int>& begins, const std::vector<int>& stops)
     {
-        if (last_ && begins == begins_ && stops == chosen_) return *last_;
+        if (instant_ && begins == begins_ && stops == chosen_) return *instant_;
         begins_ = begins;
         chosen_ = stops;
         DecidedTimes times = times_;
+        const double t = reached_.t;
         for (std::size_t j = 0; j < times.joints.size(); ++j) {
             const int joint = static_cast<int>(j);
             const auto is_among = [&](const std::vector<int>& all) {
@@ -40,20 +41,23 @@ public:
             };
             if (is_stop(model_.joints()[joint])) {
                 times.joints[j].clear();
-                if (is_among(stops)) times.joints[j].push_back({t_, t_ + 1});
+                if (is_among(stops)) times.joints[j].push_back({t, t + 1});
             } else if (is_among(begins)) {
-                times.joints[j].push_back({t_, t_ + 1});
+                times.joints[j].push_back({t, t + 1});
             }
         }
-        return last_.emplace(acting_at(as_decided(model_, times), t_).model);
+        instant_.reset();
+        held_.emplace(acting_at(as_decided(model_, times), t).model);
+        return instant_.emplace(*held_, most_rows(*held_, std::span(&reached_, 1)));
     }
 
 private:
     const Model& model_;
     DecidedTimes times_;
-    double t_;
+    const State& reached_;
     std::vector<int> begins_, chosen_;   // of the last
-    std::optional<Model> last_;
+    std::optional<Model> held_;
+    std::optional<SettledInstant> instant_;
 };
 
 std::string names_of(const Model& model, const std::vector<int>& joints)
@@ -81,7 +85,7 @@ class Meeting {
 public:
     Meeting(const Model& model, const Decisions& decisions, const State& reached,
             const std::vector<int>& begins)
-        : model_(model), held_(model, decisions, reached.t), before_(reached), begins_(begins)
+        : model_(model), held_(model, decisions, reached), before_(reached), begins_(begins)
     {
         outcome_.V = reached.V;
         for (const int j : begins) (is_stop(model.joints()[j]) ? stops_ : both_ways_).push_back(j);
@@ -196,7 +200,7 @@ private:
     }
 
     const Model& model_;
-    HeldModels held_;
+    HeldMechanism held_;
     const State& before_;
     const std::vector<int>& begins_;
     std::vector<int> both_ways_, stops_, hit_, resting_;   // stops: the new ones first

@@ -44,6 +44,7 @@ bool Decisions::is_armed(const EventAction& action, double t) const
 void Decisions::act(const Model& model, const EventAction& action, double t)
 {
     if (!is_armed(action, t)) return;
+    ++changes_;
     if (action.does == EventAction::Does::end) {
         std::vector<TimeSpan>& all = spans(action);
         all.back().until = t;

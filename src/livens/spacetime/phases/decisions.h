@@ -16,6 +16,8 @@ public:
     Decisions(const Model& model, double start);
 
     const DecidedTimes& times() const { return times_; }
+    /// How often they have changed.
+    int changes() const { return changes_; }
     bool acts(const EventAction& of, double t) const;
     /// Whether anything would happen.
     bool is_armed(const EventAction& action, double t) const;
@@ -25,6 +27,7 @@ private:
     std::vector<TimeSpan>& spans(const EventAction& of);
 
     DecidedTimes times_;
+    int changes_ = 0;
 };
 
 /// The joint that an action begins with an impact; null: there is none.

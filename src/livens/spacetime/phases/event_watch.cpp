@@ -64,10 +64,12 @@ double rounding_of_stop(const Model& model, const Event& event)
 }
 
 EventWatch::EventWatch(const Model& model, ActingModel acting, std::vector<bool> armed, const State& start,
-                       const std::vector<double>& slack)
+                       const std::vector<double>& slacks)
     : whole_(model), acting_(std::move(acting)), armed_(std::move(armed)), start_(start),
-      first_watch_(static_cast<int>(acting_.model.loads().size()))
+      first_watch_(static_cast<int>(acting_.model.loads().size())),
+      slack_(std::make_shared<std::vector<double>>(model.events().size()))
 {
+    take(slacks);
     const auto reads_reactions = [](const Event& event) { return !event.terms.reactions.empty(); };
     if (std::ranges::any_of(model.events(), reads_reactions)) {
         // A copy: what solves for reactions does not see who asks for them.
@@ -90,14 +92,11 @@ EventWatch::EventWatch(const Model& model, ActingModel acting, std::vector<bool>
             std::ranges::any_of(acting_.model.loads(), [&](const Load& l) { return l.name == watch.name; }))
             watch.name += "'";
         const int e = static_cast<int>(acting_.model.loads().size()) - first_watch_;
-        double size = is_open_stop(e) ? rounding_of_stop(whole_, event) : 0;
-        if (size > 0 && !slack.empty()) size *= slack[static_cast<std::size_t>(e)];
-        slack_.push_back(size);
-        if (slack_[e] > 0)
-            watch.guarded = [exact = watch.guarded, by = slack_[e]](const LoadArguments& at,
-                                                                    std::span<double> out) {
+        if (slack(e) > 0)
+            watch.guarded = [exact = watch.guarded, all = slack_, e](const LoadArguments& at,
+                                                                     std::span<double> out) {
                 exact(at, out);
-                out[0] -= by;
+                out[0] -= (*all)[e];
             };
         // Where nothing would happen nothing is looked for: what a closed stop holds is near its border
         // always.
@@ -106,6 +105,24 @@ EventWatch::EventWatch(const Model& model, ActingModel acting, std::vector<bool>
     }
     loads_ = std::make_unique<LoadTables>(acting_.model);
     start_.angles.resize(loads_->turns.size(), 0.0);
+}
+
+void EventWatch::begin_again(const State& start, const std::vector<double>& slacks)
+{
+    start_ = start;
+    start_.angles.resize(loads_->turns.size(), 0.0);
+    take(slacks);
+    lost_ = -1;
+    held_.clear();
+}
+
+void EventWatch::take(const std::vector<double>& slacks)
+{
+    for (int e = 0; e < static_cast<int>(whole_.events().size()); ++e) {
+        const auto at = static_cast<std::size_t>(e);
+        (*slack_)[at] = is_open_stop(e) ? rounding_of_stop(whole_, whole_.events()[at]) : 0;
+        if (!slacks.empty()) (*slack_)[at] *= slacks[at];
+    }
 }
 
 std::function<void(const LoadArguments&, std::span<double>)> EventWatch::reactions_of(const Event& event)
@@ -155,7 +172,7 @@ std::vector<double> EventWatch::terms_at(int event, const State& state) const
     const std::vector<double> X = numbers_of(state.X), V = numbers_of(state.V);
     if (!angles.empty()) loads_->turns.follow(Configurations(X.data()), angles);
     watch.guarded(loads_->arguments(first_watch_ + event, {state.t}, X.data(), V.data(), angles), terms);
-    if (slack_[event] > 0) terms[0] += slack_[event];
+    if (slack(event) > 0) terms[0] += slack(event);
     return terms;
 }
 
@@ -255,7 +272,7 @@ std::vector<int> EventWatch::fired(const Motion& so_far)
     const State now = beside(so_far, n, behind, false), by_slope = beside(so_far, n, behind, true);
     for (int e = 0; e < n_events; ++e) {
         const auto is_beyond = [&](const State& state) {
-            return slack_[e] > 0 ? margin(e, state) > slack_[e] : holds_at(e, state);
+            return slack(e) > 0 ? margin(e, state) > slack(e) : holds_at(e, state);
         };
         const bool holds_now = is_beyond(now);
         // The polynomial has it, the state will: its zero lies in the jump between both.
@@ -270,8 +287,8 @@ std::vector<int> EventWatch::fired(const Motion& so_far)
 bool EventWatch::comes_at_once(const Motion& motion, int event) const
 {
     const Border border = border_of(motion, std::span(&event, 1));
-    return border.rate > 0 && slack_[event] - border.margin <
-                                  at_once * motion.mesh.length(motion.n_elements() - 1) * border.rate;
+    return border.rate > 0 &&
+           slack(event) - border.margin < at_once * motion.mesh.length(motion.n_elements() - 1) * border.rate;
 }
 
 EventWatch::Border EventWatch::border_of(const Motion& motion, std::span<const int> events) const
@@ -297,7 +314,7 @@ EventWatch::Border EventWatch::border_of(const Motion& motion, std::span<const i
 bool EventWatch::was_beyond(const Motion& motion, std::span<const int> events) const
 {
     const State before = motion.at_end(motion.n_elements() - 1);
-    return std::ranges::any_of(events, [&](int e) { return slack_[e] > 0 && margin(e, before) > 0; });
+    return std::ranges::any_of(events, [&](int e) { return slack(e) > 0 && margin(e, before) > 0; });
 }
 
 double EventWatch::rounding_at_end(const Motion& motion, int event) const

@@ -23,10 +23,13 @@ class EventWatch {
 public:
     /// `armed`: of each event of the model, whether something would happen. `start`: of the phase; what its
     /// angles lack of those that events count has not turned yet. Throws InputError `event-reaction` for a
-    /// reaction that is not unique there. `slack`: of open stops, how many times what rounding has beyond
+    /// reaction that is not unique there. `slacks`: of open stops, how many times what rounding has beyond
     /// them is not looked at; empty: once.
     EventWatch(const Model& model, ActingModel acting, std::vector<bool> armed, const State& start,
-               const std::vector<double>& slack = {});
+               const std::vector<double>& slacks = {});
+
+    /// For another phase with the same joints and armed events, which ask for no reactions.
+    void begin_again(const State& start, const std::vector<double>& slacks);
 
     /// With the loads that watch, which come last.
     const Model& model() const { return acting_.model; }
@@ -58,12 +61,13 @@ public:
     /// How far a condition is from changing in a state, in units of its formulas: positive where it is true.
     double margin(int event, const State& state) const;
     /// What of the margin of an open stop is rounding; 0 for all else.
-    double slack(int event) const { return slack_[static_cast<std::size_t>(event)]; }
+    double slack(int event) const { return (*slack_)[static_cast<std::size_t>(event)]; }
     /// Angles on the way to a configuration.
     void follow(const std::vector<Matrix34>& X, std::vector<double>& angles) const;
 
 private:
     std::function<void(const LoadArguments&, std::span<double>)> reactions_of(const Event& event);
+    void take(const std::vector<double>& slacks);
     bool is_open_stop(int event) const;
     bool is_number_along(const Motion& motion, int event) const;
     State beside(const Motion& motion, int end, double share, bool by_slope) const;
@@ -79,7 +83,7 @@ private:
     std::shared_ptr<const Model> mechanism_model_;
     std::shared_ptr<SettledInstant> mechanism_;   // null: nothing asks for reactions
     std::unique_ptr<LoadTables> loads_;
-    std::vector<double> slack_;   // of each event: it is looked for so far behind its border, see fired()
+    std::shared_ptr<std::vector<double>> slack_;   // of each event: it is looked for so far behind its border
     int lost_ = -1;
     std::vector<bool> held_;   // of each event, at the last end
 };

@@ -18,6 +18,7 @@
 #include "livens/spacetime/phases/event_end.h"
 #include "livens/spacetime/phases/event_watch.h"
 #include "livens/spacetime/phases/events.h"
+#include "livens/spacetime/phases/phase_model.h"
 #include "livens/spacetime/phases/samplings.h"
 
 namespace livens::inline spacetime_internal {
@@ -47,7 +48,8 @@ public:
     Solution solve(Method method, double accuracy, double tolerance_of_meeting) const
     {
         Solution whole;
-        Way at{problem_, options_, Decisions(given_, start_of(time_)), start_of(time_)};
+        Way at{problem_, options_, Decisions(given_, start_of(time_)), start_of(time_),
+               PhaseModel(stated_, problem_.ends_by_events)};
         at.method = std::move(method);
         at.slack.assign(stated_.events().size(), 1.0);
         begin_at_stops(at, whole);
@@ -71,6 +73,7 @@ private:
         SolveOptions options;
         Decisions decisions;
         double first;   // where the phase begins
+        PhaseModel model;
         Method method{};
         bool jumps = false;               // behind an impact
         double length = 0;                // of elements to begin with
@@ -80,13 +83,10 @@ private:
     };
 
     double nearest() const { return nearest_ends * (known_.back() - known_.front()); }
-    Model decided(const Way& at) const
-    {
-        return stated_.events().empty() ? stated_ : as_decided(stated_, at.decisions.times());
-    }
+    const Model& decided(Way& at) const { return at.model.decided(at.decisions); }
     /// What formulas say at an instant: those that read reactions see the joints that act by then.
     template <class Question>
-    auto ask(const Way& at, const Question& question) const
+    auto ask(Way& at, const Question& question) const
     {
         return reads_reactions(stated_) ? question(decided(at)) : question(stated_);
     }
@@ -95,16 +95,14 @@ private:
     bool run_phase(Way& at, double accuracy, Solution& whole) const
     {
         const double last = *std::ranges::upper_bound(known_, at.first);
-        ActingModel acting = acting_at(decided(at), 0.5 * (at.first + last));
-        std::unique_ptr<EventWatch> watch;
-        if (!stated_.events().empty()) {
-            watch = begin_watch(at, last, acting, whole);
-            if (watch == nullptr) return false;
+        if (!begin(at, last, whole)) return false;
+        EventWatch* const watch = at.model.watch();
+        if (watch != nullptr) {
             at.problem.conditions.start = watch->start();
             at.problem.fired = [&](const Motion& so_far) { return watch->fired(so_far); };
         }
-        const Model& model = watch != nullptr ? watch->model() : acting.model;
-        Solution next = solve_next(model, at, last, accuracy);
+        const ActingModel& acting = at.model.acting();
+        Solution next = solve_next(acting.model, at, last, accuracy);
         if (at.first > known_.front()) date_notes(whole.report.notes, at.first, next.report.notes);
         if (next.motion.mesh.ends.empty()) {
             whole.report += std::move(next.report);
@@ -153,23 +151,20 @@ private:
         return goes_on;
     }
 
-    /// Null: reactions are not unique any more, and the report says so.
-    std::unique_ptr<EventWatch> begin_watch(Way& at, double last, ActingModel& acting, Solution& whole) const
+    /// False: reactions are not unique any more, and the report says so.
+    bool begin(Way& at, double last, Solution& whole) const
     {
         try {
-            std::unique_ptr<EventWatch> watch = watch_of(at, acting);
-            while (release_stops(at, *watch, whole)) {
-                acting = acting_at(decided(at), 0.5 * (at.first + last));
-                watch = watch_of(at, acting);
-            }
-            return watch;
+            do at.model.begin(at.decisions, at.first, last, at.problem.conditions.start, at.slack);
+            while (at.model.watch() != nullptr && release_stops(at, *at.model.watch(), whole));
+            return true;
         } catch (const InputError& error) {
             if (at.first == known_.front()) throw;
             whole.report.status = SolveStatus::not_converged;
             whole.report.failed_at = at.first;
             whole.report.message = "at " + to_text(at.first, 6) + " s " + error.complaint().message +
                                    "; try: " + error.complaint().help;
-            return nullptr;
+            return false;
         }
     }
 
@@ -189,18 +184,6 @@ private:
             is_any = true;
         }
         return is_any;
-    }
-
-    std::unique_ptr<EventWatch> watch_of(Way& at, const ActingModel& acting) const
-    {
-        std::vector<bool> armed;
-        for (const Event& event : stated_.events()) {
-            const bool is_idle =
-                event.action.does == EventAction::Does::end_motion && !problem_.ends_by_events;
-            armed.push_back(!is_idle && at.decisions.is_armed(event.action, at.first));
-        }
-        return std::make_unique<EventWatch>(stated_, acting, std::move(armed), at.problem.conditions.start,
-                                            at.slack);
     }
 
     /// A phase that cannot begin leaves what was solved before it.
