@@ -433,6 +433,27 @@ TEST(Horizon, GrowthOnAnUnstableRestIsItsExponential)
     }
 }
 
+/// An event between bodies beside it takes nothing off: what pieces over it begin from is the motion. Let go
+/// itself, it falls, and neighbours part as time goes.
+TEST(Horizon, GrowthGoesOnBehindAnEvent)
+{
+    for (const bool is_let_go : {false, true}) {
+        Model model({0, 0, -9.81});
+        model.add_body(point_mass("bob", 1, {0, 0, 1}));
+        model.add_body(point_mass("other", 1, {3, 0, -1}));
+        Joint head = rod("rod", world, 0, {}, 1), hanger = rod("hanger", world, 1, {3, 0, 0}, 1);
+        (is_let_go ? head : hanger).until = 2;
+        model.add_joint(head);
+        model.add_joint(hanger);
+        const Solution s = with_growth(model, 4, 80, Lobatto{6});
+        ASSERT_EQ(s.growth.size(), 81u);
+        EXPECT_NEAR(std::log(s.growth[38] / s.growth[18]), std::sqrt(9.81), 0.02);
+        // let go its rate is sqrt(g) times the distance from there on
+        const double expected = is_let_go ? 1 + 2 * std::sqrt(9.81) : std::exp(2 * std::sqrt(9.81));
+        EXPECT_NEAR(s.growth[80] / s.growth[40] / expected, 1, 0.02);
+    }
+}
+
 /// Where drives determine the motion, neighbours of the start are the start, and their distance is rounding.
 TEST(Horizon, WhatIsDrivenDoesNotGrow)
 {

@@ -59,6 +59,29 @@ TEST(StepSizeController, FindsTheLengthThatTheToleranceAllows)
     }
 }
 
+TEST(StepSizeController, TellsWhatElementsLoseThatSomethingElseKeepsShort)
+{
+    constexpr double scale = 2, expected = 1e-13;   // of the tolerance
+    const double longest = 1.6 * std::pow(1e-8 / 0.04, 1.0 / 9),
+                 length = longest * std::pow(expected, 1.0 / 9);
+    const auto lost = [&](double h, std::vector<double> stops) {
+        StepSizeController controller(Points::lobatto, 4, 1e-8, h, std::move(stops));
+        TimeMesh mesh{{0}};
+        while (mesh.end() < 10) {
+            mesh.ends.push_back(mesh.end() + h);
+            controller.shorten(h);
+            controller.accepted(h, std::pow(h / scale, 5), 1);
+        }
+        return controller.lost(mesh);
+    };
+    EXPECT_NEAR(lost(length, {0, 100}), expected, 1e-2 * expected);
+    EXPECT_EQ(lost(longest, {0, 100}), 1);         // the tolerance rules
+    EXPECT_EQ(lost(0.5 * longest, {0, 100}), 1);   // or nearly so
+    std::vector<double> stops;
+    for (double t = 0; t < 100; t += length) stops.push_back(t);
+    EXPECT_EQ(lost(length, stops), 1);   // stops do, which shorter elements have as well
+}
+
 TEST(StepSizeController, LengthsStayWhereAFactorServesTheNext)
 {
     const double right = 0.8 * 2 * std::pow(1e-8 / 0.04, 1.0 / 9);   // as above

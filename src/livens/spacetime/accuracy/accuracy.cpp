@@ -147,6 +147,7 @@ public:
         if (!is_good) so_far_.count(error, last_.is_broken_off);
         if (!is_good && (tries >= most_tries || tolerance_ <= finest)) return give_up(solution);
         so_far_.is_once_good = is_good;
+        if (!is_good) tolerance_ *= last_.controller->lost(solution.motion.mesh);
         aim_at(error / span_.accuracy * left_out(solution.motion), is_good);
         so_far_.is_first = false;
         options_ = with_tolerance_for(span_.accuracy, tries + 1, std::move(options_));

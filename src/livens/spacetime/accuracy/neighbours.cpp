@@ -19,8 +19,7 @@ namespace {
 constexpr Nearness beside_one{1e-7, 3e-7, 1e-6}, beside_two{1e-5, 3e-5, 1e-4};
 /// Where neighbours are not careful what bends is no more than their iteration may leave.
 constexpr Nearness beside_at_first{1e-7, 1e-6, 3e-6};
-/// Growth up to which a careful neighbour on one side does, and what an error of it may become. Not where a
-/// piece that begins anew is not the motion: blocks, and steps that go on from more than a state.
+/// Growth up to which a careful neighbour on one side does, and what an error of it may become.
 constexpr double most_of_one = 100, share_of_one = 1e-2;
 /// Of what neighbours are apart: what their iteration may leave, if careful by the square of the growth.
 constexpr double share_left = 1e-4, least_share_at_first = 1e-5;
@@ -56,12 +55,20 @@ Motion mirrored(const Motion& motion, int first, const Motion& beside)
     return other;
 }
 
+/// A piece that begins anew from a state of the motion is the motion: not of blocks and steps, which go on
+/// from more than a state, nor where the motion decides or turns are counted that pieces over events lose.
+bool begins_as_motion(const Surroundings& at)
+{
+    return at.closed || (is_nodal(at.method) && at.model.events().empty() && at.motion.load_angles.empty());
+}
+
 }   // namespace
 
 Neighbours::Neighbours(const Surroundings& at, double most_left)
     : at_(at), is_careful_(at.is_careful),
-      most_alone_(at.closed ? std::min(most_of_one, std::sqrt(share_of_one * beside_one.small / most_left))
-                            : 0),
+      most_alone_(begins_as_motion(at)
+                      ? std::min(most_of_one, std::sqrt(share_of_one * beside_one.small / most_left))
+                      : 0),
       has_two_(most_alone_ < 1), near_(has_two_ ? beside_two : beside_one), way_{.length = first_piece}
 {
     if (at.closed && !at.has_bends)

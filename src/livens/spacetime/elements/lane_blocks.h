@@ -101,11 +101,37 @@ LIVENS_INLINE void add_at_nodes(const double* x, const double* M, int n, int to_
     for (int B = 0, i = 0; B < p; B += W, ++i) store_anywhere(out + (B + W <= p ? B : p - W), sums[i]);
 }
 
+/// Of n rows of M at up to `blocks` times W nodes, which stay in registers for all rows of J.
+template <int W, int n, int blocks>
+LIVENS_INLINE void add_column(const double* J, int rows, const double* M, int to_next, const BlockSize& of,
+                              double* out)
+{
+    const int last = of.p - W;
+    Lanes<W> m[blocks][n];
+    for (int i = 0; i < blocks; ++i)
+        for (int j = 0; j < n; ++j)
+            m[i][j] = load_anywhere<W>(M + j * to_next + (i < blocks - 1 ? i * W : last));
+    for (int r = 0; r < rows; ++r, J += n * of.p, out += of.f * of.p) {
+        Lanes<W> sums[blocks];
+        for (int i = 0; i < blocks; ++i) {
+            const int first = i < blocks - 1 ? i * W : last;
+            sums[i] = load_anywhere<W>(out + first);
+            for (int j = 0; j < n; ++j) sums[i] += load_anywhere<W>(J + j * of.p + first) * m[i][j];
+        }
+        for (int i = 0; i < blocks; ++i) store_anywhere(out + (i < blocks - 1 ? i * W : last), sums[i]);
+    }
+}
+
 template <int W>
 LIVENS_INLINE void add_all_from_right(const double* J, int rows, const double* M, const BlockSize& of,
                                       bool transposed, double* out)
 {
     const int to_next = transposed ? of.p : of.f * of.p, to_other = transposed ? of.n * of.p : of.p;
+    if (W == part && of.n == 6 && of.p > W && of.p <= 2 * W) {   // a rigid body at as many nodes as usual
+        for (int k = 0; k < of.f; ++k)
+            add_column<W, 6, 2>(J, rows, M + k * to_other, to_next, of, out + k * of.p);
+        return;
+    }
     for (int r = 0; r < rows; ++r)
         for (int k = 0; k < of.f; ++k)
             add_at_nodes<W>(J + r * of.n * of.p, M + k * to_other, of.n, to_next, of.p,

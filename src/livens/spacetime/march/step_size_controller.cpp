@@ -31,6 +31,11 @@ constexpr double shortest = 1e-9;
 /// What rounding alone makes of a jump; up to a hundred times as much says only that elements may be longer.
 constexpr double least_jump = 1e-15;
 
+/// In tolerances: what elements lose that are not ruled by it. And how many of them there are between stops
+/// that do not rule them either.
+constexpr double much_less = 1e-5;
+constexpr int many_between_stops = 4;
+
 /// Of J in the local error, and of h in it, by which lengths follow.
 double exponent(Points points, int degree)
 {
@@ -163,6 +168,17 @@ double StepSizeController::mean_length(int degree, double tolerance) const
     if (n_accepted_ == 0) return 0;
     const double scale = exponential(sum_of_scales_ / n_accepted_);
     return safety * scale * power(velocity_jump_of(points_, degree, tolerance), 1.0 / (degree + 1));
+}
+
+double StepSizeController::lost(const TimeMesh& mesh) const
+{
+    if (!tells_length_) return 1;
+    double sum = 0;
+    for (int e = 0; e < mesh.n_elements(); ++e) sum += logarithm(mesh.length(e));
+    const double length = exponential(sum / mesh.n_elements());
+    if (many_between_stops * length > mean_stop()) return 1;
+    const double lost = power(length / mean_length(), order(points_, degree_));
+    return lost < much_less ? lost : 1;
 }
 
 double StepSizeController::mean_stop() const

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "livens/time/basis.h"
+#include "livens/time/time_mesh.h"
 
 namespace livens::inline spacetime_internal {
 
@@ -59,6 +60,9 @@ public:
     bool tells_length() const { return tells_length_; }
     /// Of the time between stops.
     double mean_stop() const;
+    /// What elements of this mesh, which it made, have lost as a rule, in tolerances, where something else
+    /// kept them much shorter, as the iteration does in fast vibrations; 1: nothing did, or stops.
+    double lost(const TimeMesh& mesh) const;
 
 private:
     double suggestion(double length, double jump) const;

@@ -48,12 +48,14 @@ namespace {
 
 /// Room for `n` entries at `first`. A march forwards writes one behind the other and touches its memory as it
 /// goes: much is not written twice, and little is made room for ahead, since arrays may be longer than what
-/// was written.
+/// was written; some pages of it are, which are still near when they are written.
 template <class T>
 [[gnu::noinline]] void make_room(std::vector<T>& values, std::size_t first, std::size_t n)
 {
-    const std::size_t ahead = std::max(2 * first, first + 8 * n);
-    values.resize(values.capacity() < first + n ? ahead : std::min(ahead, values.capacity()));
+    constexpr std::size_t near = std::size_t{1} << 14;   // bytes
+    const std::size_t few = 8 * n, ahead = std::max(2 * first, first + few);
+    if (values.capacity() < first + n) values.reserve(ahead);
+    values.resize(std::min({ahead, first + std::max(few, near / sizeof(T)), values.capacity()}));
 }
 
 void put(std::vector<double>& values, int place, std::size_t n, const double* from)

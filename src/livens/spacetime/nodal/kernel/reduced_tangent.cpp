@@ -20,6 +20,28 @@ double product(const double* a, const double* b, int n)
     return sum;
 }
 
+/// sum_a c_a x_a of n numbers a column, all columns side by side.
+template <int n>
+void combine(const double* c, const double* __restrict x, int columns, double* __restrict sums)
+{
+    for (int i = 0; i < columns; ++i) {
+        double sum = 0;
+        for (int a = 0; a < n; ++a) sum += c[a] * x[a * columns + i];
+        sums[i] = sum;
+    }
+}
+
+void combine(int n, const double* c, const double* x, int columns, double* sums)
+{
+    if (n == 3) return combine<3>(c, x, columns, sums);
+    combine<6>(c, x, columns, sums);
+}
+
+void add_products(const double* __restrict x, const double* __restrict y, int n, double* __restrict to)
+{
+    for (int i = 0; i < n; ++i) to[i] += x[i] * y[i];
+}
+
 }   // namespace
 
 ReducedTangent::ReducedTangent(const ModelTables& tables, const ElementRule& rule,
@@ -113,21 +135,31 @@ void ReducedTangent::add_mass(double h)
         }
 }
 
+/// Columns, the twists of all nodes, stand side by side.
 void ReducedTangent::add_load(const SlopesOfPair& pair, const double* slopes, const Numbers& in_time,
                               double factor)
 {
+    if (std::all_of(slopes, slopes + 36, [](double slope) { return slope == 0; })) return;
     const int p = rule_.degree, first = tables_.bodies[pair.i].first, n = tables_.bodies[pair.i].dofs,
-              from = tables_.bodies[pair.j].first, m_of = tables_.bodies[pair.j].dofs;
+              from = tables_.bodies[pair.j].first, m_of = tables_.bodies[pair.j].dofs, size = p * f_;
+    columns_.resize(static_cast<std::size_t>(14 * size));
+    double *y = columns_.data(), *forces = y + 6 * size, *sums = forces + 6 * size, *times = sums + size;
     for (int l = 0; l < p; ++l)
-        for (int m = 0; m < f_; ++m) {
-            double force[6] = {};
-            const double* y = z(l == 0 ? p : l, m) + from;
-            for (int a = 0; a < n; ++a) force[a] = factor * product(slopes + 6 * a, y, m_of);
-            for (int A = 0; A < p; ++A)
-                for (int k = 0; k < f_; ++k)
-                    entry(A, k, l, m) += in_time[static_cast<std::size_t>(A * p + l)] *
-                                         product(z(row_in_lane(rule_, A), k) + first, force, n);
+        for (int m = 0; m < f_; ++m)
+            for (int a = 0; a < m_of; ++a) y[a * size + l * f_ + m] = z(l == 0 ? p : l, m)[from + a];
+    for (int a = 0; a < n; ++a) {
+        double* force = forces + a * size;
+        combine(m_of, slopes + 6 * a, y, size, force);
+        for (int i = 0; i < size; ++i) force[i] *= factor;
+    }
+    for (int A = 0; A < p; ++A) {
+        for (int l = 0; l < p; ++l)
+            std::fill_n(times + l * f_, f_, in_time[static_cast<std::size_t>(A * p + l)]);
+        for (int k = 0; k < f_; ++k) {
+            combine(n, z(row_in_lane(rule_, A), k) + first, forces, size, sums);
+            add_products(times, sums, size, &entry(A, k, 0, 0));
         }
+    }
 }
 
 void ReducedTangent::add_product(const SlopesOfProduct& of, const LoadSlopes& slopes, double h)

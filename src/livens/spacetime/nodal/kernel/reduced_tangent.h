@@ -49,6 +49,7 @@ private:
     SquareFactor factor_;
     Numbers theta_;
     Numbers directions_, by_X_, by_V_;   // of a product, at all nodes
+    Numbers columns_;                    // of a load: twists, forces, sums of a row and factors in time
 };
 
 }   // namespace livens::inline spacetime_internal
