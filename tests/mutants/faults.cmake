@@ -2000,7 +2000,7 @@ livens_mutant(NAME turns_of_each_rank
 livens_mutant(NAME motions_of_neighbours
               FILE solvers/rank_ends.cpp
               OLD [[is_row ? to[j] += from[i] * value : to[i] += value * from[j];]]
-              NEW [[to[i] += value * from[j];]]
+              NEW [[is_row ? to[i] += value * from[j] : to[i] += value * from[j];]]
               TESTS_OF unit_solvers
               MUST_FAIL RankEnds.PartsOfAChainAreSolvedLikeTheWhole)
 
