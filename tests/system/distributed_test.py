@@ -203,8 +203,8 @@ class ByMpirun(Distributed):
         for case, small, large in (("from a state", scenario(0.02, 8), scenario(4, 6000)),
                                    ("a border", by_component(known, 8, 1), by_component(known, 6000, 1)),
                                    ("lobatto", by_lobatto(scenario(0.02, 8)), by_lobatto(scenario(4, 6000))),
-                                   ("lobatto, a border", by_lobatto(by_component(known, 8, 1)),
-                                    by_lobatto(by_component(known, 6000, 1)))):
+                                   ("lobatto, a border", by_lobatto(by_component(known, 8, 1), 5),
+                                    by_lobatto(by_component(known, 6000, 1), 5))):
             self.measure_memory(case, small, large)
 
     def measure_memory(self, case, small, large):

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is divided among ranks, and what is not.
+#include <algorithm>
 #include <string>
 #include <variant>
 #include <vector>
@@ -37,6 +38,15 @@ void check_mixed_elements(const Mixed& method, const TimeMesh& mesh, const Solve
                "ranks have no matrix of the whole", "", "leave it out, or " + all);
 }
 
+/// Of laws that bend at places of their own. A spring through its centre is looked at inside of elements.
+bool has_bends(const Model& model)
+{
+    const auto bends = [](const ConstraintRow& row) { return row.guard.has_value(); };
+    return std::ranges::any_of(model.loads(), [](const Load& load) { return !load.guards.empty(); }) ||
+           std::ranges::any_of(model.joints(),
+                               [&](const Joint& j) { return std::ranges::any_of(j.rows, bends); });
+}
+
 void check_lobatto(const Model& model, const Problem& problem, const Lobatto& method, const TimeMesh& mesh,
                    const SolveOptions& options)
 {
@@ -49,7 +59,7 @@ void check_lobatto(const Model& model, const Problem& problem, const Lobatto& me
     if (options.condition)
         refuse("ranks-method", "method.condition", "ranks have no matrix of the whole", "",
                "leave it out, or " + all);
-    if (is_from_state && options.end_at_bends && model.has_pieces())
+    if (is_from_state && options.end_at_bends && has_bends(model))
         refuse("ranks-conditions", "load",
                "where laws bend, elements end: only a march, element by element, finds these instants", "",
                all);

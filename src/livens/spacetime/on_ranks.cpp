@@ -188,18 +188,12 @@ void take_work(const FiguresOfPart& of, const Traffic& before, Ranks& ranks, Sol
     report.factor_entries = static_cast<long long>(sums[1]);
 }
 
-/// As a march looks at itself: springs that turn may let vibrations grow.
-bool is_steady(const Model& model, const Motion& part, const Method& method, Ranks& ranks,
-               SolveReport& report)
+/// As a march looks at itself: why springs that turn let vibrations grow in this motion; empty: they do not.
+std::string unsteady(const Model& model, const Motion& part, const Method& method, Ranks& ranks)
 {
     const auto* lobatto = std::get_if<Lobatto>(&method);
-    if (lobatto == nullptr || !EnergyWatch::serves(model)) return true;
-    const std::string why = said_by_first(EnergyWatch(model, lobatto->degree).look(part, part.end()), ranks);
-    if (why.empty()) return true;
-    report.status = SolveStatus::not_converged;
-    report.failed_at = part.end();
-    report.message = why;
-    return false;
+    if (lobatto == nullptr || !EnergyWatch::serves(model)) return "";
+    return said_by_first(EnergyWatch(model, lobatto->degree).look(part, part.end()), ranks);
 }
 
 /// Conditions that the motion does not meet. Angles that count turns are known to all ranks.
@@ -253,7 +247,8 @@ Solution solve_parts(const Model& model, const Problem& problem, TimeMesh& mesh,
     lower_orders(found, motion.mesh, motion);
     compare_parts(found, motion, relayed.guess(), ranks, report);
     if (ends.has_state()) {
-        is_steady(found, motion, method, ranks, report);
+        if (std::string why = unsteady(found, motion, method, ranks); !why.empty())
+            solution.verdict.reasons.push_back(std::move(why));
         return solution;
     }
     solution.verdict.reasons = unmet_by_parts(found, own.ends(ends), own.part().values_of_conditions(),

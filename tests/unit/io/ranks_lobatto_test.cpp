@@ -192,6 +192,27 @@ TEST(RanksLobatto, ElementsThatDoNotSeeTheMotionAreRefused)
     EXPECT_TRUE(good[0].solution.report.converged()) << good[0].solution.report.message;
 }
 
+/// A march says so, and ends; ranks have the whole of it and do not believe it. Shorter elements are the
+/// control.
+TEST(RanksLobatto, SpringsThatTurnAreSuspect)
+{
+    const auto row = [](int elements) {
+        std::string text;
+        for (const auto& [name, side] : {std::pair{"a", ""}, {"b", "-"}})
+            text += std::string("[[body]]\nname = \"") + name +
+                    "\"\nmass = 1\nshape = { point = true }\nposition = [0, 0, " + side +
+                    "1.25]\nvelocity = [" + side + "1.25, 0, 0]\n";
+        return text +
+               "[[load]]\ntype = \"spring\"\nname = \"s\"\nbetween = [\"a\", \"b\"]\nstiffness = "
+               "1e4\nfree_length = 2.5\n" +
+               lobatto("end = 12\nelements = " + std::to_string(elements), 2);
+    };
+    const Solution long_ones = alone(row(30)), short_ones = by_ranks(row(400), 3)[1].solution;
+    EXPECT_FALSE(long_ones.report.converged());
+    EXPECT_TRUE(short_ones.report.converged()) << short_ones.report.message;
+    for (const Part& part : by_ranks(row(30), 3)) EXPECT_FALSE(part.solution.report.converged());
+}
+
 }   // namespace
 
 }   // namespace livens
