@@ -1996,6 +1996,38 @@ livens_mutant(NAME turns_of_each_rank
               TESTS_OF unit_io
               MUST_FAIL RanksBorder.ConditionsByComponentAreThoseOfTheSerialRun)
 
+# Neighbours take free motions of one another for their own.
+livens_mutant(NAME motions_of_neighbours
+              FILE solvers/rank_ends.cpp
+              OLD [[is_row ? to[j] += from[i] * value : to[i] += value * from[j];]]
+              NEW [[is_row ? to[i] += value * from[j] : to[i] += value * from[j];]]
+              TESTS_OF unit_solvers
+              MUST_FAIL RankEnds.PartsOfAChainAreSolvedLikeTheWhole)
+
+# A condition of both ends is not joined from the first rank to the last one.
+livens_mutant(NAME ends_not_joined
+              FILE spacetime/nodal/ranks_window.cpp
+              OLD [[= last ? -1 : 1;]]
+              NEW [[= 1;]]
+              TESTS_OF unit_io
+              MUST_FAIL RanksLobatto.PeriodicMotionsAreThoseOfTheSerialRun)
+
+# Laws of every rank count turns from where the first one begins.
+livens_mutant(NAME turns_not_relayed
+              FILE spacetime/nodal/ranks_window.cpp
+              OLD [[system().begin_angles(angles);]]
+              NEW [[if (ranks_.is_first()) system().begin_angles(angles);]]
+              TESTS_OF unit_io
+              MUST_FAIL RanksLobatto.MotionsFromAStateAreThoseOfTheSerialRun)
+
+# What elements of ranks did not see is believed.
+livens_mutant(NAME unseen_on_ranks
+              FILE spacetime/on_ranks.cpp
+              OLD [[if (options.divide && ends.has_state()) w.criteria]]
+              NEW [[if (!options.divide && ends.has_state()) w.criteria]]
+              TESTS_OF unit_io
+              MUST_FAIL RanksLobatto.ElementsThatDoNotSeeTheMotionAreRefused)
+
 # States by the mass of what holds them.
 livens_mutant(NAME states_with_mass
               FILE multibody/controllers.cpp

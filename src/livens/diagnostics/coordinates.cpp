@@ -171,8 +171,10 @@ void append_energy(const Model& model, int b, const State& state, std::vector<do
 LoadTurns::LoadTurns(const Model& model, const Motion& motion) : motion_(motion), turns_(model)
 {
     if (turns_.empty()) return;
-    std::vector<double> now = turns_.begin();
-    // Turns are counted from node to node, as the march counts them.
+    // Turns are counted from node to node, as the march counts them; of a part of a motion from where it
+    // begins.
+    std::vector<double> now = motion.at_end(0).angles;
+    if (now.size() != turns_.size()) now = turns_.begin();
     turns_.follow(sample_state(motion, motion.start()).X, now);
     at_ends_ = now;
     for (int e = 0; e < motion.n_elements(); ++e) {

@@ -22,16 +22,17 @@ struct BlockStructure {
                                                 ///< ends at the last node, and neighbours share a node or
                                                 ///< more (splines); first < last, both ascend
     int n_border = 0, n_closing = 0;            ///< unknowns, rows; none where there are no nodes
+    bool is_part = false;   ///< of a longer chain: closing rows of other parts complete the matrix
 
     int n_nodes() const { return static_cast<int>(n_unknowns.size()); }
     int n_elements() const { return static_cast<int>(elements.size()); }
     /// Throws std::invalid_argument, naming what is wrong, where the above does not hold or the whole matrix
-    /// would not be square.
+    /// would not be square, unless it is a part.
     void check() const;
     bool operator==(const BlockStructure&) const = default;
 };
 
-/// Of the whole matrix, which is square.
+/// Unknowns of the whole matrix, which is square unless it is a part.
 int size_of(const BlockStructure& structure);
 
 /// starts[i] = counts[0] + ... + counts[i - 1], one more than there are counts.

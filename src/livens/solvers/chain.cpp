@@ -45,7 +45,7 @@ void ChainSolver::analyse(const BlockStructure& structure)
     running_sums(structure.n_rows, first_row_);
     running_sums(structure.n_unknowns, first_unknown_);
     structure_ = structure;
-    n_carried_ = structure.n_closing > 0 ? structure.n_unknowns.front() : 0;
+    n_carried_ = structure.n_closing > 0 || structure.is_part ? structure.n_unknowns.front() : 0;
     try {
         take_room();
     } catch (...) {   // memory ended, or who waits: half a room is none
@@ -63,9 +63,10 @@ void ChainSolver::take_room()
         shape(e);
     }
     const int n = n_links() == 0 ? 0 : n_carried_ + structure_->n_unknowns.back() + structure_->n_border;
-    closing_.resize(n, n, 0);
+    if (ends_ == nullptr) closing_.resize(n, n, 0);
     matrix_.resize(*structure_);
-    work_.right_side.assign(static_cast<std::size_t>(size_of(*structure_)), 0.0);
+    const int n_rows = first_row_.back() + structure_->n_closing;
+    work_.right_side.assign(static_cast<std::size_t>(std::max(size_of(*structure_), n_rows)), 0.0);
 }
 
 void ChainSolver::shape(int e)
@@ -205,6 +206,19 @@ Outcome ChainSolver::factorise(BlockMatrix& matrix)
     is_regular_ = false;
     growth_ = 1;
     std::swap(matrix_, matrix);
+    Outcome outcome = condense_all();
+    if (ends_ != nullptr) {   // which all parts ask together
+        const bool is_closed = close_by_others(outcome == Outcome::regular);
+        if (outcome == Outcome::regular && !is_closed) outcome = Outcome::singular;
+    } else if (outcome == Outcome::regular) {
+        outcome = close();
+    }
+    is_regular_ = outcome == Outcome::regular;
+    return outcome;
+}
+
+Outcome ChainSolver::condense_all()
+{
     const auto is_finite = [](const Values& values) {
         return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
     };
@@ -228,17 +242,31 @@ Outcome ChainSolver::factorise(BlockMatrix& matrix)
         if (!is_good[e]) singular_node_ = link.failed < 0 ? link.first : node_inside(link, link.failed);
         return Outcome::singular;
     }
-    if (n_links() > 0) {
-        if (front(n_links() - 1).n_left() + structure_->n_closing != closing_.n_rows())
-            return Outcome::singular;
-        fill_closing();
-        if (!closing_.eliminate(0, closing_.width())) {
-            singular_node_ = closing_.failed_column() < n_carried_ ? 0 : structure_->n_nodes() - 1;
-            return Outcome::singular;
-        }
-    }
-    is_regular_ = true;
     return Outcome::regular;
+}
+
+Outcome ChainSolver::close()
+{
+    if (n_links() == 0) return Outcome::regular;
+    if (front(n_links() - 1).n_left() + structure_->n_closing != closing_.n_rows()) return Outcome::singular;
+    fill_closing();
+    if (closing_.eliminate(0, closing_.width())) return Outcome::regular;
+    singular_node_ = closing_.failed_column() < n_carried_ ? 0 : structure_->n_nodes() - 1;
+    return Outcome::singular;
+}
+
+bool ChainSolver::close_by_others(bool is_regular)
+{
+    Values rows;
+    if (is_regular) {
+        const Panel& left = front(n_links() - 1);
+        for (int i = 0; i < left.n_left(); ++i) {
+            const double* row = left.row(left.n_pivots() + i);
+            rows.insert(rows.end(), row + left.n_pivots(), row + left.width());
+        }
+        rows.insert(rows.end(), matrix_.closing().begin(), matrix_.closing().end());
+    }
+    return ends_->factorise(rows);
 }
 
 LinearReport ChainSolver::report() const
@@ -247,6 +275,8 @@ LinearReport ChainSolver::report() const
     report.smallest_pivot = is_regular_ ? std::numeric_limits<double>::infinity() : 0;
     const auto look = [&](const Panel& panel) {
         report.factor_entries += static_cast<long long>(panel.n_rows()) * panel.width();
+        for (long long k = 0; k < panel.n_pivots(); ++k)
+            report.flops += 2 * (panel.n_rows() - k - 1) * (panel.width() - k - 1);
         if (!is_regular_) return;
         report.smallest_pivot = std::min(report.smallest_pivot, panel.smallest_pivot());
         report.largest_entry = std::max(report.largest_entry, panel.largest());
@@ -260,5 +290,6 @@ LinearReport ChainSolver::report() const
 }
 
 std::unique_ptr<LinearSolver> chain_solver() { return std::make_unique<ChainSolver>(); }
+std::unique_ptr<LinearSolver> solver_of_part(ChainEnds& ends) { return std::make_unique<ChainSolver>(&ends); }
 
 }   // namespace livens::inline solvers_internal

@@ -28,7 +28,7 @@ void take(const double*& from, Values& to, int n)
 /// One step of refinement.
 void ChainSolver::solve(std::span<double> x, bool is_transposed) const
 {
-    assert(is_regular_ && x.size() == work_.right_side.size());
+    assert(is_regular_ && x.size() == work_.right_side.size() && !(is_transposed && ends_ != nullptr));
     const auto invert = [&](double* v) { is_transposed ? apply_inverse_transposed(v) : apply_inverse(v); };
     std::copy(x.begin(), x.end(), work_.right_side.begin());
     invert(x.data());
@@ -116,8 +116,15 @@ void ChainSolver::apply_inverse(double* x) const
     }
     work_.front.insert(work_.front.end(), x + first_row_.back(),
                        x + first_row_.back() + structure_->n_closing);
-    closing_.apply(work_.front.data());
-    closing_.solve(work_.front.data(), nullptr);
+    if (ends_ != nullptr) {
+        work_.others.resize(
+            static_cast<std::size_t>(n_carried_ + structure_->n_unknowns.back() + structure_->n_border));
+        ends_->solve(work_.front, work_.others);
+        work_.front.swap(work_.others);
+    } else {
+        closing_.apply(work_.front.data());
+        closing_.solve(work_.front.data(), nullptr);
+    }
     substitute_back(x);
     substitute_inside(x);
 }

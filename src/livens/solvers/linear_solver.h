@@ -13,6 +13,7 @@ enum class Outcome { regular, singular, not_finite };
 
 struct LinearReport {
     long long factor_entries = 0;   ///< numbers that the solver keeps of a factorisation
+    long long flops = 0;            ///< of products with pivot rows, if all are eliminated; 0: not known
     double smallest_pivot = 0;      ///< smallest |u_kk| of the factors; 0: not known
     double largest_entry = 0;       ///< largest |u_ij|; 0: not known. Far above the entries of the matrix it
                                     ///< tells of lost digits
@@ -46,6 +47,21 @@ public:
     virtual LinearReport report() const = 0;
 };
 
+/// What completes the matrices of chains that are parts of a longer one, in every part.
+class ChainEnds {
+public:
+    ChainEnds() = default;
+    ChainEnds(const ChainEnds&) = delete;
+    ChainEnds& operator=(const ChainEnds&) = delete;
+    virtual ~ChainEnds() = default;
+
+    /// Rows of a part, row by row: what is left of its elements, then its closing rows; by unknowns of the
+    /// first node, of the last, of the border. None: it is singular. False, for all parts: they are.
+    virtual bool factorise(std::span<const double> rows) = 0;
+    /// Of the right side of these rows the unknowns.
+    virtual void solve(std::span<const double> rows, std::span<double> ends) = 0;
+};
+
 /// For motions known at one end: rows of nodes 0..n-1 for unknowns of nodes 1..n, or, mirrored, rows of nodes
 /// 1..n for unknowns of nodes 0..n-1. The matrix is block triangular over elements, which share one node
 /// each: element by element, dense LU with row exchanges of the rows first..last-1 and the unknowns
@@ -59,6 +75,9 @@ std::unique_ptr<LinearSolver> forward_solver();
 /// refinement. Takes the values of the matrix away. Time and memory grow with the number of elements; factors
 /// of one element with n unknowns inside and f at each end take about n (n + 5 f) + 24 f f numbers.
 std::unique_ptr<LinearSolver> chain_solver();
+/// The same for a part of a longer chain, closed by `ends`, which must outlive the solver. Right-hand sides
+/// have the part's rows, solutions its unknowns, in vectors of the larger number; none is transposed.
+std::unique_ptr<LinearSolver> solver_of_part(ChainEnds& ends);
 
 /// For any structure: one sparse matrix, and one step of iterative refinement. The pattern are the entries
 /// that were not zero in some factorisation since analyse(); it is analysed anew where it has grown. Pivots,

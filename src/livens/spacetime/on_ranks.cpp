@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's elements, all of time at once, divided among processes: a march that goes from rank to rank
+// Elements of all of time at once, divided among processes: a march that goes from rank to rank
 // makes the guess, the driver of windows solves in all ranks at once, and figures are joined (theory.md, "The
 // elements of the paper": Ranks).
 #include "livens/spacetime/on_ranks.h"
@@ -17,14 +17,15 @@
 #include "livens/dynamics/rows/tables.h"
 #include "livens/dynamics/start/prepared.h"
 #include "livens/solvers/crew.h"
+#include "livens/spacetime/accuracy/turning_springs.h"
 #include "livens/spacetime/ensemble.h"
 #include "livens/spacetime/found.h"
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/march/components.h"
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/mixed/bases.h"
-#include "livens/spacetime/mixed/rank_block.h"
 #include "livens/spacetime/mixed/window.h"
+#include "livens/spacetime/nodal/ranks_window.h"
 #include "livens/spacetime/other_motions.h"
 #include "livens/spacetime/parts_of_motion.h"
 #include "livens/spacetime/proposals.h"
@@ -35,52 +36,76 @@ namespace livens {
 
 namespace {
 
-[[noreturn]] void refuse(const char* code, const char* path, const std::string& what,
-                         const std::string& given, const std::string& help)
-{
-    throw InputError({code, path, what, given, "", "docs/howto/cluster.md", help});
-}
-
 /// A march that begins where the one of the rank before has ended. Attempts have elements a quarter as long
 /// as those before.
 class RelayedMarch {
 public:
-    RelayedMarch(const Model& model, const TimeMesh& mesh, const Ends& ends, const Mixed& method,
+    RelayedMarch(const ModelTables& tables, const TimeMesh& mesh, const Ends& ends, const Method& method,
                  Ranks& ranks)
-        : model_(model), mesh_(mesh), ends_(ends), method_(method), ranks_(ranks)
+        : tables_(tables), mesh_(mesh), ends_(ends), method_(method), ranks_(ranks)
     {}
 
     WindowOptions::Proposal operator()(int, int, int attempt)
     {
         const State& known = ends_.is_backwards() ? ends_.end : ends_.start;
-        const bool is_steady = method_.first_guess == Mixed::FirstGuess::steady;
+        const auto* mixed = std::get_if<Mixed>(&method_);
+        const bool is_steady = mixed != nullptr && mixed->first_guess == Mixed::FirstGuess::steady;
         if (attempt > (is_steady ? 0 : 2)) return {};
         if (is_steady) return {guess_steady(known), false};
-        const std::vector<int> parts = parts_of_ranks(model_, mesh_, ranks_.size());
-        const auto rank = static_cast<std::size_t>(ranks_.rank());
-        std::vector<double> times;
-        const int pieces = 1 << (2 * attempt);
-        for (int e = parts[rank]; e < parts[rank + 1]; ++e)
-            for (int i = 0; i < pieces; ++i) times.push_back(mesh_.ends[e] + mesh_.length(e) * i / pieces);
-        times.push_back(mesh_.ends[parts[rank + 1]]);
-        if (ends_.is_backwards()) std::ranges::reverse(times);
-        std::vector<double> numbers = numbers_of(known);
-        const int before = ranks_.rank() - (ends_.is_backwards() ? -1 : 1),
-                  behind = ranks_.rank() + (ends_.is_backwards() ? -1 : 1);
-        if (before >= 0 && before < ranks_.size()) ranks_.receive(before, numbers);
-        guess_ = guess_from_state(model_, state_of(numbers), times, method_.witness().degree).motion;
-        State reached = guess_(times.back());
+        const std::vector<double> times = instants(1 << (2 * attempt));
+        State first = received(known);
+        std::vector<double> angles = tables_.loads.turns.begin(first);
+        guess_ =
+            guess_from_state(*tables_.model, first, times, mixed != nullptr ? mixed->witness().degree : 2)
+                .motion;
+        State reached;
+        for (const double t : times) {
+            reached = guess_(t);
+            tables_.loads.turns.follow(reached.X, angles);
+        }
         reached.t = times.back();
-        if (behind >= 0 && behind < ranks_.size()) ranks_.send(behind, numbers_of(reached));
+        reached.angles = std::move(angles);
+        hand_on(reached);
         return {guess_, false};
     }
     const Guess& guess() const { return guess_; }
 
 private:
-    const Model& model_;
+    /// In the direction of the march: element ends of the rank, each element divided into `pieces`.
+    std::vector<double> instants(int pieces) const
+    {
+        const std::vector<int> parts = parts_of_ranks(*tables_.model, mesh_, ranks_.size(), method_);
+        const auto rank = static_cast<std::size_t>(ranks_.rank());
+        std::vector<double> times;
+        for (int e = parts[rank]; e < parts[rank + 1]; ++e)
+            for (int i = 0; i < pieces; ++i) times.push_back(mesh_.ends[e] + mesh_.length(e) * i / pieces);
+        times.push_back(mesh_.ends[parts[rank + 1]]);
+        if (ends_.is_backwards()) std::ranges::reverse(times);
+        return times;
+    }
+    int next() const { return ranks_.rank() + (ends_.is_backwards() ? -1 : 1); }
+    State received(const State& known)
+    {
+        const int before = 2 * ranks_.rank() - next();
+        if (before < 0 || before >= ranks_.size()) return known;
+        std::vector<double> numbers = numbers_of(known), angles = tables_.loads.turns.begin();
+        ranks_.receive(before, numbers);
+        if (!angles.empty()) ranks_.receive(before, angles);
+        State state = state_of(numbers);
+        state.angles = std::move(angles);
+        return state;
+    }
+    void hand_on(const State& reached)
+    {
+        if (next() < 0 || next() >= ranks_.size()) return;
+        ranks_.send(next(), numbers_of(reached));
+        if (!reached.angles.empty()) ranks_.send(next(), reached.angles);
+    }
+
+    const ModelTables& tables_;
     const TimeMesh& mesh_;
     const Ends& ends_;
-    const Mixed& method_;
+    const Method& method_;
     Ranks& ranks_;
     Guess guess_;
 };
@@ -93,10 +118,15 @@ void lower_orders(const Model& model, const TimeMesh& mesh, Motion& part)
         *stated = std::min(*stated, 1);
 }
 
-WindowOptions options_on_ranks(const Model& model, const Ends& ends, const SolveOptions& options,
-                               Ranks& ranks)
+WindowOptions options_on_ranks(const Model& model, const Ends& ends, const Method& method,
+                               const SolveOptions& options, Ranks& ranks)
 {
     WindowOptions w = window_options(model, options);
+    if (std::holds_alternative<Lobatto>(method)) {
+        // As alone: motions are compared with others, and a march looks at its elements.
+        w.solve.tolerance = std::min(options.tolerance, 1e-10);
+        if (options.divide && ends.has_state()) w.criteria = {acceptable_velocity_jump, true, true};
+    }
     w.direction = ends.is_backwards() ? -1 : 1;
     w.length = 0;
     w.may_split = w.ends_at_bends = false;
@@ -109,21 +139,31 @@ WindowOptions options_on_ranks(const Model& model, const Ends& ends, const Solve
     return w;
 }
 
+UnknownsWindow::Maker maker_on_ranks(const Method& method, Ranks& ranks)
+{
+    if (const auto* mixed = std::get_if<Mixed>(&method)) return mixed_windows(*mixed, &ranks);
+    return windows_of_ranks(std::get<Lobatto>(method), ranks);
+}
+
 /// The window of this rank: with numbers that are to be found, or without.
 class OwnWindow {
 public:
-    OwnWindow(const NumberedProblem& numbered, const ModelTables& tables, const Mixed& method, Ranks& ranks,
+    OwnWindow(const NumberedProblem& numbered, const ModelTables& tables, const Method& method, Ranks& ranks,
               FoundNumbers& found)
     {
+        const auto* mixed = std::get_if<Mixed>(&method);
         if (numbered.size() > 0)
-            numbered_.emplace(numbered, numbered.guesses(), mixed_windows(method, &ranks), found);
+            numbered_.emplace(numbered, numbered.guesses(), maker_on_ranks(method, ranks), found);
+        else if (mixed != nullptr)
+            plain_ = std::make_unique<MixedWindow>(tables, numbered.mesh(), numbered.ends(), *mixed, &ranks);
         else
-            plain_.emplace(tables, numbered.mesh(), numbered.ends(), method, &ranks);
+            plain_ = std::make_unique<RanksWindow>(tables, numbered.mesh(), numbered.ends(),
+                                                   std::get<Lobatto>(method), ranks);
     }
     Window& window() { return numbered_ ? static_cast<Window&>(*numbered_) : *plain_; }
-    const MixedWindow& at_hand() const
+    const PartOfRanks& part() const
     {
-        return numbered_ ? static_cast<const MixedWindow&>(numbered_->now()) : *plain_;
+        return dynamic_cast<const PartOfRanks&>(numbered_ ? numbered_->now() : *plain_);
     }
     /// As they are with what was found.
     Ends ends(const Ends& stated) const { return numbered_ ? numbered_->instance().ends : stated; }
@@ -131,27 +171,29 @@ public:
 
 private:
     std::optional<UnknownsWindow> numbered_;
-    std::optional<MixedWindow> plain_;
+    std::unique_ptr<BorderedWindow> plain_;
 };
 
-void take_work(const MixedWindow& window, const Traffic& before, Ranks& ranks, SolveReport& report,
+void take_work(const FiguresOfPart& of, const Traffic& before, Ranks& ranks, SolveReport& report,
                RankWork& work)
 {
-    const mixed::RankBlock* block = window.of_rank();
-    if (block == nullptr) return;
-    work = {window.elements().first,
-            window.elements().second,
-            block->equations().n_formed(),
-            block->factors().n_left(),
-            block->factors().n_in_chain(),
-            block->factors().n_chain(),
-            block->factors().flops(),
-            {ranks.traffic().messages - before.messages, ranks.traffic().bytes - before.bytes}};
-    std::array<double, 2> sums{static_cast<double>(block->n_own()),
-                               static_cast<double>(block->factors().entries())};
+    work = {
+        of.first,      of.last,
+        of.n_formed,   of.n_left,
+        of.n_in_chain, of.n_chain,
+        of.flops,      {ranks.traffic().messages - before.messages, ranks.traffic().bytes - before.bytes}};
+    std::array<double, 2> sums{static_cast<double>(of.n_unknowns), static_cast<double>(of.factor_entries)};
     ranks.sum(sums);
     report.unknowns = static_cast<int>(sums[0]);
     report.factor_entries = static_cast<long long>(sums[1]);
+}
+
+/// As a march looks at itself: why springs that turn let vibrations grow in this motion; empty: they do not.
+std::string unsteady(const Model& model, const Motion& part, const Method& method, Ranks& ranks)
+{
+    const auto* lobatto = std::get_if<Lobatto>(&method);
+    if (lobatto == nullptr || !EnergyWatch::serves(model)) return "";
+    return said_by_first(EnergyWatch(model, lobatto->degree).look(part, part.end()), ranks);
 }
 
 /// Conditions that the motion does not meet. Angles that count turns are known to all ranks.
@@ -174,18 +216,18 @@ std::vector<std::string> unmet_by_parts(const Model& model, Ends ends, const std
 Solution solve_parts(const Model& model, const Problem& problem, TimeMesh& mesh, const Method& method,
                      const SolveOptions& options, Ranks& ranks, RankWork& work)
 {
-    const auto& elements = std::get<Mixed>(method);
     const Ends ends = close_ends(model, problem, mesh.start(), mesh.end(), options.initial);
     const Traffic before = ranks.traffic();
     Solution solution;
     solution.method = method;
     SolveReport& report = solution.report;
     report.notes = ends.notes;
-    const ModelTables tables(model, ends.independent, true, problem.prepared->pattern(model));
+    const bool is_mixed = std::holds_alternative<Mixed>(method);
+    const ModelTables tables(model, ends.independent, is_mixed, problem.prepared->pattern(model));
     const NumberedProblem numbered(model, ends, mesh, problem.unknowns);
-    OwnWindow own(numbered, tables, elements, ranks, solution.numbers);
-    WindowOptions w = options_on_ranks(model, ends, options, ranks);
-    RelayedMarch relayed(model, mesh, ends, elements, ranks);
+    OwnWindow own(numbered, tables, method, ranks, solution.numbers);
+    WindowOptions w = options_on_ranks(model, ends, method, options, ranks);
+    RelayedMarch relayed(tables, mesh, ends, method, ranks);
     Proposals between(problem, numbered, method, own.window(), nullptr);
     if (ends.has_state())
         w.propose = std::ref(relayed);
@@ -197,15 +239,19 @@ Solution solve_parts(const Model& model, const Problem& problem, TimeMesh& mesh,
         return solution;
     }
     mesh = own.mesh(mesh);
-    take_work(own.at_hand(), before, ranks, report, work);
+    take_work(own.part().figures(), before, ranks, report, work);
     work.mesh = mesh;
     solution.motion = own.window().take_motion();
     Motion& motion = solution.motion;
     const Model& found = found_model(model, solution);
     lower_orders(found, motion.mesh, motion);
     compare_parts(found, motion, relayed.guess(), ranks, report);
-    if (ends.has_state()) return solution;
-    solution.verdict.reasons = unmet_by_parts(found, own.ends(ends), own.at_hand().values_of_conditions(),
+    if (ends.has_state()) {
+        if (std::string why = unsteady(found, motion, method, ranks); !why.empty())
+            solution.verdict.reasons.push_back(std::move(why));
+        return solution;
+    }
+    solution.verdict.reasons = unmet_by_parts(found, own.ends(ends), own.part().values_of_conditions(),
                                               ends_of_parts(motion, ranks));
     const State first = state_of_all(motion, false, ranks);
     report_no_period(solution.numbers, ranks.all(is_at_rest(found, ends, first, motion)), report);
@@ -238,40 +284,6 @@ std::string another_period(const Model& model, const Solution& solution, TimeMes
 }
 
 }   // namespace
-
-void check_ranks(const Model& model, const Problem& problem, const Time& time, const Method& method,
-                 const SolveOptions& options, int n_ranks)
-{
-    check_method(model, problem, time, method, options);
-    const auto* elements = std::get_if<Mixed>(&method);
-    const auto* mesh = std::get_if<TimeMesh>(&time);
-    const std::string all = "solve it without '--distributed'";
-    if (elements == nullptr || mesh == nullptr)
-        refuse("ranks-method", "method.family",
-               "only the elements of the family mixed are divided among ranks", name_of(method),
-               "the family mixed with a number of elements, or " + all);
-    if (elements->window != 0 && elements->window < mesh->n_elements())
-        refuse("ranks-method", "method.window", "blocks that follow each other are not divided among ranks",
-               std::to_string(elements->window), "all elements at once, or " + all);
-    if (elements->basis != Mixed::Basis::lagrange)
-        refuse("ranks-method", "method.basis", "functions of several elements are not divided among ranks",
-               std::string(mixed::basis_of(*elements).word), "Lagrange's basis, or " + all);
-    if (elements->linear_solver != SparseBackend::eigen || options.condition)
-        refuse("ranks-method", options.condition ? "method.condition" : "method.linear_solver",
-               "ranks have no matrix of the whole", "", "leave it out, or " + all);
-    if (options.roots > 1)
-        refuse("ranks-conditions", "method.roots", "several motions are not looked for by ranks",
-               std::to_string(options.roots), "leave roots out, or " + all);
-    if (model.has_events() || model.has_rotors())
-        refuse("ranks-conditions", "event",
-               "events and inertias along coordinates are not divided among ranks", "", all);
-    const std::vector<int> parts = parts_of_ranks(model, *mesh, n_ranks);
-    for (std::size_t i = 1; i < parts.size(); ++i)
-        if (parts[i] <= parts[i - 1])
-            refuse("ranks-elements", "time.elements", "every rank needs an element of its own",
-                   std::to_string(mesh->n_elements()) + " elements for " + std::to_string(n_ranks) + " ranks",
-                   "start fewer ranks");
-}
 
 Solution solve_on_ranks(const Model& model, const Problem& stated, const Time& time, const Method& method,
                         const SolveOptions& options, Ranks& ranks, RankWork& work)

@@ -20,7 +20,9 @@ struct RankWork {
 };
 
 /// Throws InputError `ranks-method`, `ranks-conditions` or `ranks-elements` for what is not solved on ranks:
-/// the elements of the family mixed on Lagrange's basis are, all at once, under any conditions.
+/// the elements of the family mixed on Lagrange's basis are, all at once, under any conditions, and those of
+/// lobatto, all at once, where no number is unknown behind a start that is known as a whole, and no law bends
+/// on the way from a state.
 void check_ranks(const Model& model, const Problem& problem, const Time& time, const Method& method,
                  const SolveOptions& options, int n_ranks);
 

@@ -15,7 +15,7 @@ namespace {
 
 class Parts : public Results {};
 
-Scenario scenario()
+Scenario scenario_of(const std::string& method)
 {
     ScenarioResult result = parse_scenario(R"(
 format = 1
@@ -32,17 +32,23 @@ between = ["world", "rod"]
 at = [0, 0, 0]
 axis = [0, 1, 0]
 rate = 3
+[[load]]
+type = "spring"
+name = "spring"
+joint = "pivot"
+stiffness = 2
 [time]
 end = 1
 elements = 40
 [method]
-family = "mixed"
 degree = 2
-)",
+)" + method,
                                            "run.toml");
     EXPECT_TRUE(result.scenario) << (result.diagnostics.empty() ? "" : result.diagnostics[0].message);
     return std::move(*result.scenario);
 }
+
+Scenario scenario() { return scenario_of("family = \"mixed\""); }
 
 void write_on(int n_ranks, const Scenario& scenario, const std::filesystem::path& file, int failing = -1)
 {
@@ -57,14 +63,13 @@ void write_on(int n_ranks, const Scenario& scenario, const std::filesystem::path
     });
 }
 
-TEST_F(Parts, AreTheFileThatOneWrites)
+void expect_the_file_of_one(const Scenario& one, const std::filesystem::path& file)
 {
-    const Scenario one = scenario();
     SolveOptions options = one.options;
     options.estimate = SolveOptions::Estimate::none;
     const Solution alone = solve(one.model, {one.conditions}, one.time, one.method, options);
     for (const int n : {1, 2, 3, 5}) {
-        const auto file = in_folder("parts.nc");
+        std::filesystem::remove(file);
         write_on(n, one, file);
         const RunFile run = read_run(file);   // looks at all checksums
         EXPECT_EQ(run.motion.mesh.ends, alone.motion.mesh.ends);
@@ -83,8 +88,15 @@ TEST_F(Parts, AreTheFileThatOneWrites)
         compare(alone.motion.X.values, run.motion.X.values, "X");
         compare(alone.motion.P.values, run.motion.P.values, "P");
         compare(alone.motion.multipliers.values, run.motion.multipliers.values, "multipliers");
+        compare(alone.motion.load_angles, run.motion.load_angles, "angles of loads");
         EXPECT_NO_THROW(check_model(one.model, run));
     }
+}
+
+TEST_F(Parts, AreTheFileThatOneWrites)
+{
+    for (const char* method : {"family = \"mixed\"", "family = \"lobatto\"\nwindow = \"all\""})
+        expect_the_file_of_one(scenario_of(method), in_folder("parts.nc"));
 }
 
 TEST_F(Parts, AreAbsentWhereARankFails)

@@ -21,7 +21,7 @@ struct Case {
     Model model;
     Problem problem;
     TimeMesh mesh;
-    Mixed method;
+    Method method;
 };
 
 struct Part {
@@ -48,12 +48,37 @@ State arrival(const Model& model, double end)
     return solution.motion.at_end(40);
 }
 
-Case make_case(const std::string& name, const Model& model, Conditions conditions, int n, const Mixed& method)
+Case make_case(const std::string& name, const Model& model, Conditions conditions, int n,
+               const Method& method)
 {
     const double end = 0.4;
     conditions.start = model.start();
     conditions.end = arrival(model, end);
     return {name, model, {conditions}, make_time_mesh(0, end, n), method};
+}
+
+/// Windows of lobatto.
+void add_lobatto(std::vector<Case>& all)
+{
+    Conditions of_start, of_end, of_places, places_momenta, momenta_places;
+    of_end.at_start = Known::nothing;
+    of_end.at_end = Known::state;
+    of_places.at_start = of_places.at_end = Known::positions;
+    places_momenta.at_start = momenta_places.at_end = Known::positions;
+    places_momenta.at_end = momenta_places.at_start = Known::momenta;
+    const Lobatto linear{1, 0}, cubic{3, 0}, high{6, 0};
+    all.push_back(make_case("lobatto", tests::hinged_links(), of_start, 41, cubic));
+    all.push_back(make_case("lobatto, linear", tests::cubes_on_rods(0.2), of_start, 66, linear));
+    all.push_back(make_case("lobatto, a loop", tests::four_bar(), of_start, 20, high));
+    all.push_back(make_case("lobatto, backwards", tests::hinged_links(), of_end, 40, cubic));
+    all.push_back(make_case("lobatto, between places", tests::hinged_links(), of_places, 40, cubic));
+    all.push_back(
+        make_case("lobatto, places, then momenta", tests::cubes_on_rods(0.2), places_momenta, 30, cubic));
+    all.push_back(
+        make_case("lobatto, momenta, then places", tests::hinged_links(), momenta_places, 30, cubic));
+    Case uneven = make_case("lobatto, uneven elements", tests::hinged_links(), of_start, 40, cubic);
+    for (std::size_t e = 1; e < 40; ++e) uneven.mesh.ends[e] += 0.004 * std::sin(static_cast<double>(e));
+    all.push_back(uneven);
 }
 
 std::vector<Case> cases()
@@ -79,6 +104,7 @@ std::vector<Case> cases()
     Case uneven = make_case("uneven elements", tests::hinged_links(), of_start, 40, linear);
     for (std::size_t e = 1; e < 40; ++e) uneven.mesh.ends[e] += 0.004 * std::sin(static_cast<double>(e));
     all.push_back(uneven);
+    add_lobatto(all);
     return all;
 }
 
@@ -226,8 +252,10 @@ TEST(OnRanks, WhatIsNotDividedIsRefused)
     const Case one = cases()[0];
     EXPECT_EQ(code_of(one, 4, one.method, one.mesh), "");
     EXPECT_EQ(code_of(one, 67, one.method, one.mesh), "ranks-elements");
-    EXPECT_EQ(code_of(one, 2, Lobatto{4}, one.mesh), "ranks-method");
-    Mixed blocks = one.method, splines = one.method;
+    EXPECT_EQ(code_of(one, 2, Lobatto{4}, one.mesh), "ranks-method") << "a march";
+    EXPECT_EQ(code_of(one, 2, Lobatto{4, 0}, one.mesh), "");
+    EXPECT_EQ(code_of(one, 2, Radau{4}, one.mesh), "ranks-method");
+    Mixed blocks = std::get<Mixed>(one.method), splines = blocks;
     blocks.window = 8;
     splines.basis = Mixed::Basis::bspline;
     EXPECT_EQ(code_of(one, 2, blocks, one.mesh), "ranks-method");

@@ -30,6 +30,8 @@ public:
                                                                {"multiplier_node", &part.multipliers},
                                                                {"rigidity_node", &part.rigidity}};
         for (const auto& [name, field] : fields) divided_[name] = field->continuous ? 1 : 0;
+        if (!part.load_angles.empty())   // of each end as many
+            divided_["load_angle"] = part.load_angles.size() / part.mesh.ends.size();
     }
 
     bool is_first() const override { return ranks_.is_first(); }
@@ -101,7 +103,7 @@ Run part_of_run(const Scenario& scenario, Solution part, const RankWork& work)
     run.resolved = scenario.resolved;
     if (has_numbers) run.numbers = numbers_of(scenario.unknowns, {});
     run.output = scenario.output.empty() ? work.mesh.ends : scenario.output;
-    run.motion.block_ends = {0, work.mesh.n_elements()};
+    if (!run.motion.block_ends.empty()) run.motion.block_ends = {0, work.mesh.n_elements()};
     return run;
 }
 

@@ -38,6 +38,7 @@ struct ChainWork {
 
 class ChainSolver final : public LinearSolver {
 public:
+    explicit ChainSolver(ChainEnds* ends = nullptr) : ends_(ends) {}
     void analyse(const BlockStructure& structure) override;
     Outcome factorise(BlockMatrix& matrix) override;
     void solve(std::span<double> x) const override { solve(x, false); }
@@ -58,6 +59,9 @@ private:
     void fill_closing();
     bool condense(Link& link, int e);
     bool merge(int e);
+    Outcome condense_all();
+    Outcome close();
+    bool close_by_others(bool is_regular);
     bool fail(int node)
     {
         singular_node_ = node;
@@ -73,6 +77,7 @@ private:
     void substitute_inside(double* x) const;
     void subtract_product(const double* x, double* y, bool is_transposed) const;
 
+    ChainEnds* ends_;   // or null
     std::optional<BlockStructure> structure_;
     std::vector<int> first_row_, first_unknown_;   // of nodes
     int n_carried_ = 0;                            // unknowns of the first node, where closing rows see them

@@ -4,6 +4,7 @@
 
 #include <cassert>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "livens/spacetime/elements/rule.h"
@@ -37,6 +38,13 @@ struct WindowLayout {
     bool X_first = true, P_first = true, X_last = false, P_last = false;
     bool are_momenta_unknown = false;   ///< those at both ends; conditions by component are rows instead
     int n_numbers = 0;                  ///< of the model that are unknown beside them
+    /// Of a part of time that one of several ranks has: its rows of conditions, and unknowns that join two
+    /// rows of one condition.
+    struct Part {
+        int n_closing = 0, n_joins = 0;
+        bool operator==(const Part&) const = default;
+    };
+    std::optional<Part> part{};
 
     int n_elements() const { return static_cast<int>(times.size()) - 1; }
     int n_nodes() const { return n_elements() * degree + 1; }

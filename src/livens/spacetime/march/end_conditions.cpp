@@ -151,7 +151,7 @@ void EndConditions::to_momenta(const double* along, double* dp) const
         const std::vector<double> one = product(along_[end], {along + end * f, f});
         std::copy(one.begin(), one.end(), dp + end * n);
     }
-    std::copy_n(along + 2 * f, ends_.n_numbers, dp + 2 * n);
+    std::copy_n(along + 2 * f, n_joins() + ends_.n_numbers, dp + 2 * n);
 }
 
 double EndConditions::size_of(std::span<const double> dp) const

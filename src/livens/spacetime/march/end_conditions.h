@@ -4,10 +4,12 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "livens/solvers/linear_solver.h"
 #include "livens/spacetime/march/end_point.h"
 #include "livens/spacetime/march/ends.h"
 
@@ -72,6 +74,13 @@ private:
     std::vector<Matrix34> X_;
 };
 
+/// Rows and unknowns that one rank of several has of conditions; see EndConditions.
+struct ConditionsOfPart {
+    ChainEnds* chain = nullptr;
+    int n_joins = 0;
+    std::vector<double> closing, missed;
+};
+
 /// Border and closing rows of a window (docs/theory.md, "Conditions by component"). Unknowns are momenta
 /// along the free motions at the first node and at the last one, f each; rows what conditions miss. Of a
 /// phase among others the rows say that its start is what it is.
@@ -80,9 +89,17 @@ public:
     /// References must outlive it.
     EndConditions(const ModelTables& tables, const Ends& ends);
 
-    int n_border() const { return 2 * tables_.freedoms() + ends_.n_numbers; }
-    /// Of an increment as Newton's iteration sees it: momenta in world axes at both ends, unknown numbers.
-    int n_numbers() const { return 2 * tables_.n_twists + ends_.n_numbers; }
+    int n_border() const { return 2 * tables_.freedoms() + n_joins() + ends_.n_numbers; }
+    /// Of an increment as Newton's iteration sees it: momenta in world axes at both ends, unknowns that join
+    /// rows of ranks, unknown numbers.
+    int n_numbers() const { return 2 * tables_.n_twists + n_joins() + ends_.n_numbers; }
+    /// Rows are of one rank of several, by the unknowns of closing() and n_joins more.
+    void be_part(ChainEnds& chain, int n_joins) { part_ = {{&chain, n_joins, {}, {}}}; }
+    /// What closes the rank's chain; null: one has all of time.
+    ChainEnds* chain() const { return part_ ? part_->chain : nullptr; }
+    void close_part(std::vector<double> rows) { part_->closing = std::move(rows); }
+    /// What the rank's rows miss, with the opposite sign.
+    void miss_in_part(std::vector<double> rows) { part_->missed = std::move(rows); }
     /// In world axes, about reference points; after evaluate() what joints allow.
     const std::vector<double>& momenta(bool last) const { return current_[last ? 1 : 0]; }
 
@@ -90,7 +107,7 @@ public:
     bool begin(bool last, const State& guess);
     void move(std::span<const double> dp, double damping);
     void keep() { kept_ = current_; }
-    void begin_with(const std::vector<double>& momenta) { current_[0] = momenta; }
+    void hold(bool last, const std::vector<double>& momenta) { current_[last ? 1 : 0] = momenta; }
     /// What others have kept.
     void adopt(const EndConditions& others) { current_ = kept_ = others.kept_; }
     /// States at both ends, and what conditions miss. False: something is not finite, or without a value.
@@ -102,9 +119,9 @@ public:
     /// Rows of the balances with what the conditions miss behind them, both with the opposite sign.
     std::vector<double> behind(std::vector<double> balances) const
     {
-        const std::vector<double>& rows = missed_.rows();
+        const std::vector<double>& rows = part_ ? part_->missed : missed_.rows();
         balances.insert(balances.end(), rows.begin(), rows.end());
-        if (ends_.is_phase())
+        if (ends_.is_phase() && !part_)
             balances.resize(balances.size() + static_cast<std::size_t>(2 * tables_.freedoms()));
         return balances;
     }
@@ -120,7 +137,7 @@ public:
     /// Closing rows at the current point: unknowns of the first node, of the last, momenta; all by these free
     /// motions at both ends.
     void differentiate(const std::array<const ConstraintBasis*, 2>& bases);
-    std::span<const double> closing() const { return closing_; }
+    std::span<const double> closing() const { return part_ ? part_->closing : closing_; }
     /// Momenta of unit free motions, n_twists x f.
     const DenseMatrix& along(bool last) const { return along_[last ? 1 : 0]; }
     /// Increments of momenta from those along the free motions where closing rows were made; numbers as they
@@ -130,8 +147,11 @@ public:
     double size_of(std::span<const double> dp) const;
 
 private:
+    int n_joins() const { return part_ ? part_->n_joins : 0; }
+
     const ModelTables& tables_;
     const Ends& ends_;
+    std::optional<ConditionsOfPart> part_;
     MissedConditions missed_;
     std::vector<Matrix34> stated_;
     std::array<EndPoint, 2> points_;

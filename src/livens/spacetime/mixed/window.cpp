@@ -89,25 +89,6 @@ std::vector<int> tears_of(const TimeSpace& space, const std::vector<double>& bre
 
 int shortest_block(const Mixed& method) { return basis_of(method).has_knots ? method.degree : 1; }
 
-std::vector<int> parts_of_ranks(const Model& model, const TimeMesh& mesh, int n_ranks)
-{
-    const std::vector<double> breaks = model.load_breaks();
-    const double reach = 1e-9 * (mesh.end() - mesh.start());   // as in tears_of()
-    // Those in the middle carry both of their ends along, in memory and in work.
-    constexpr double at_ends = 1.4;
-    const double all = n_ranks - 2 + 2 * at_ends;
-    std::vector<int> parts{0};
-    for (int rank = 1; rank < n_ranks; ++rank) {
-        int e = static_cast<int>(mesh.n_elements() * (rank - 1 + at_ends) / all);
-        e = std::max(e, parts.back() + 1);
-        const auto is_near = [&](double t) { return std::abs(t - mesh.ends[e]) <= reach; };
-        while (e < mesh.n_elements() && std::ranges::any_of(breaks, is_near)) ++e;
-        parts.push_back(e);
-    }
-    parts.push_back(mesh.n_elements());
-    return parts;
-}
-
 TimeSpace space_of(const Model& model, const Mixed& method, const TimeMesh& mesh, int first, int last)
 {
     const std::vector<double> ends(mesh.ends.begin() + first, mesh.ends.begin() + last + 1);
@@ -176,7 +157,7 @@ bool MixedWindow::open(int first, int last, SolveReport&)
     first_ = first;
     last_ = last;
     if (ranks_ != nullptr) {
-        const std::vector<int> parts = parts_of_ranks(*tables_.model, mesh_, ranks_->size());
+        const std::vector<int> parts = parts_of_ranks(*tables_.model, mesh_, ranks_->size(), method_);
         first_ = parts[static_cast<std::size_t>(ranks_->rank())];
         last_ = parts[static_cast<std::size_t>(ranks_->rank()) + 1];
     }
@@ -214,7 +195,21 @@ std::vector<double> MixedWindow::values_of_conditions() const
     return values;
 }
 
-const RankBlock* MixedWindow::of_rank() const { return dynamic_cast<const RankBlock*>(block_.get()); }
+FiguresOfPart MixedWindow::figures() const
+{
+    const auto& block = static_cast<const RankBlock&>(*block_);
+    FiguresOfPart of;
+    of.first = first_;
+    of.last = last_;
+    of.n_formed = block.equations().n_formed();
+    of.n_left = block.factors().n_left();
+    of.n_in_chain = block.factors().n_in_chain();
+    of.n_chain = block.factors().n_chain();
+    of.flops = block.factors().flops();
+    of.n_unknowns = block.n_own();
+    of.factor_entries = block.factors().entries();
+    return of;
+}
 
 bool MixedWindow::start_from(const Guess& guess)
 {

@@ -6,6 +6,7 @@
 
 #include "livens/solvers/ranks.h"
 #include "livens/spacetime/march/ends.h"
+#include "livens/spacetime/march/part_of_ranks.h"
 #include "livens/spacetime/mixed/coordinates.h"
 #include "livens/spacetime/mixed/end_momentum.h"
 #include "livens/spacetime/mixed/motion_of_blocks.h"
@@ -26,9 +27,6 @@ namespace livens::inline spacetime_internal {
 /// knots, weights, pairings (`mixed-pairing`), conditions at the ends.
 void check_mixed(const Model& model, const Conditions& conditions, const TimeMesh& mesh, const Mixed& method);
 
-/// First elements of the parts of ranks, and the end of the last. No part begins where a load breaks.
-std::vector<int> parts_of_ranks(const Model& model, const TimeMesh& mesh, int n_ranks);
-
 /// The smallest number of elements that can be a block.
 int shortest_block(const Mixed& method);
 
@@ -41,7 +39,7 @@ struct EndOfBlock {
     std::vector<Matrix34> P;
 };
 
-class MixedWindow final : public BorderedWindow {
+class MixedWindow final : public BorderedWindow, public PartOfRanks {
 public:
     /// References must outlive the window; `tables` are with rigidity.
     /// `ranks`: this one solves its part of all elements; null: all that are asked for.
@@ -63,12 +61,9 @@ public:
     WorstResidual worst() const override;
     void describe(SolveReport& report) const override;
     Motion take_motion() override;
-    /// What the ranks have done; null without these.
-    const mixed::RankBlock* of_rank() const;
-    /// First and last of the elements at hand, the latter not included.
-    std::pair<int, int> elements() const { return {first_, last_}; }
-    /// What quantities of conditions by component are in the solution at hand, angles with their turns.
-    std::vector<double> values_of_conditions() const;
+    /// Of a window among those of ranks.
+    FiguresOfPart figures() const override;
+    std::vector<double> values_of_conditions() const override;
 
 private:
     mixed::EndMomentum momentum_of(bool X_known, const EndOfBlock& end) const;

@@ -36,6 +36,11 @@ BlockStructure structure_of(const WindowLayout& layout, int freedoms)
         structure.elements.push_back({e * layout.degree, (e + 1) * layout.degree});
     if (layout.are_momenta_unknown)
         structure.n_border = structure.n_closing = 2 * freedoms + layout.n_numbers;
+    if (layout.part) {
+        structure.is_part = true;
+        structure.n_closing = layout.part->n_closing;
+        structure.n_border += layout.part->n_joins;
+    }
     return structure;
 }
 
@@ -114,6 +119,7 @@ public:
     {
         if (f_ > 0 && structure_.n_elements() > 1) report.factor_entries = solver_->report().factor_entries;
     }
+    long long flops() const override { return f_ > 0 ? solver_->report().flops : 0; }
     double least_resisted(std::span<const double> rows, std::vector<double>& y) override;
     void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
 
@@ -222,7 +228,8 @@ bool Pairs::take_transposed(int e, int A, int B)
 void NullSpaces::close_with(std::span<const double> closing, const DenseMatrix& by_numbers)
 {
     if (f_ == 0) return;
-    const int last = structure_.n_elements() - 1, m = structure_.n_border;
+    const int last = structure_.n_elements() - 1, m = structure_.n_border, n_closing = structure_.n_closing;
+    const int first_number = m - layout_->n_numbers;
     for (int e = 0; e <= last; ++e) std::ranges::fill(matrix_.border_storage(e), 0.0);
     double *first_row = matrix_.border(0, 0), *last_row = matrix_.border(last, structure_.n_nodes() - 1);
     for (int i = 0; i < f_; ++i) {
@@ -230,16 +237,17 @@ void NullSpaces::close_with(std::span<const double> closing, const DenseMatrix& 
         last_row[i * m + f_ + i] = -1;
     }
     std::vector<double>& rows = matrix_.closing();
-    rows.assign(static_cast<std::size_t>(m * (2 * f_ + m)), 0.0);
-    for (int i = 0; i < m; ++i)
-        std::copy_n(closing.data() + 4 * f_ * i, 4 * f_, rows.data() + (2 * f_ + m) * i);
-    for (int j = 0; j < m - 2 * f_; ++j) {
+    rows.assign(static_cast<std::size_t>(n_closing * (2 * f_ + m)), 0.0);
+    const int n_seen = 2 * f_ + first_number;
+    for (int i = 0; i < n_closing; ++i)
+        std::copy_n(closing.data() + n_seen * i, n_seen, rows.data() + (2 * f_ + m) * i);
+    for (int j = 0; j < layout_->n_numbers; ++j) {
         const double* column = by_numbers.column(j).data();
         for (int A = 0; A < structure_.n_nodes(); ++A) {
-            double* border = matrix_.border(layout_->first_element(A), A) + 2 * f_ + j;
+            double* border = matrix_.border(layout_->first_element(A), A) + first_number + j;
             for (int i = 0; i < f_; ++i) border[i * m] = *column++;
         }
-        for (int i = 0; i < m; ++i) rows[(2 * f_ + m) * i + 4 * f_ + j] = *column++;
+        for (int i = 0; i < n_closing; ++i) rows[(2 * f_ + m) * i + n_seen + j] = *column++;
     }
 }
 
@@ -280,7 +288,9 @@ void NullSpaces::to_current(const double* x, int A, double* y) const
 void NullSpaces::solve(std::span<const double> rows, const double*, double* y)
 {
     const int n = tables_.n_twists, k = tables_.rank;
+    const int n_unknowns = size_of(structure_);
     x_.assign(rows.begin(), rows.end());
+    if (structure_.is_part) x_.resize(std::max(x_.size(), static_cast<std::size_t>(n_unknowns)), 0.0);
     if (!maps_.empty()) to_factorised(x_.data());
     if (f_ > 0) solver_->solve(x_);
     const int first = layout_->is_unknown(0) ? 0 : 1;
@@ -294,7 +304,7 @@ void NullSpaces::solve(std::span<const double> rows, const double*, double* y)
         nodes_->basis(A).q.apply(to);
     });
     const int last = structure_.n_nodes() - 1, n_unknown = last + (layout_->is_unknown(last) ? 1 : 0) - first;
-    std::copy_n(x_.end() - structure_.n_border, structure_.n_border,
+    std::copy_n(x_.begin() + n_unknowns - structure_.n_border, structure_.n_border,
                 y + static_cast<std::ptrdiff_t>(n_unknown) * n);
 }
 

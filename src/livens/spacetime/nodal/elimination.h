@@ -20,8 +20,8 @@ public:
     /// Takes the null spaces of all nodes, before a tangent is formed.
     virtual void begin(const WindowLayout& layout, const Nodes& nodes) = 0;
     /// Conditions by component, after a tangent was formed: their rows by the free motions at the first node,
-    /// at the last, and by momenta along these, which are in the balances there; and all rows (balances, then
-    /// conditions) by unknown numbers.
+    /// at the last, and by momenta along these, which are in the balances there, and by what joins them to
+    /// those of other ranks; and all rows (balances, then conditions) by unknown numbers.
     virtual void close_with(std::span<const double> /*closing*/, const DenseMatrix& /*by_numbers*/) {}
     /// Rows and increments belong to these nodes, of a model with these tables, from now on: by default to
     /// those of begin().
@@ -43,6 +43,7 @@ public:
     /// most, then unknown numbers. 0: they are not kept.
     virtual double least_resisted(std::span<const double> /*rows*/, std::vector<double>& /*y*/) { return 0; }
     virtual void describe(SolveReport& report) const = 0;
+    virtual long long flops() const { return 0; }   ///< of a factorisation; 0: not known
     /// Of the tangent that was formed; uses it up.
     virtual void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) = 0;
 };

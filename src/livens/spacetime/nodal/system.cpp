@@ -26,7 +26,8 @@ void NodalSystem::open(const WindowLayout& layout, const InstantState* first, co
     const bool is_alike = layout.n_nodes() == layout_.n_nodes() && layout.X_first == layout_.X_first &&
                           layout.P_first == layout_.P_first && layout.X_last == layout_.X_last &&
                           layout.P_last == layout_.P_last &&
-                          layout.are_momenta_unknown == layout_.are_momenta_unknown;
+                          layout.are_momenta_unknown == layout_.are_momenta_unknown &&
+                          layout.part == layout_.part;
     layout_ = layout;
     nodes_.open(layout_);
     if (!is_alike) rows_.open(layout_);
@@ -50,6 +51,8 @@ bool NodalSystem::takes_bodies_apart() const
 
 std::unique_ptr<Elimination> NodalSystem::on_null_spaces() const
 {
+    if (conditions_ != nullptr && conditions_->chain() != nullptr)
+        return null_space_elimination(tables_, layout_, solver_of_part(*conditions_->chain()));
     return null_space_elimination(tables_, layout_, layout_.is_march() ? forward_solver() : chain_solver());
 }
 
@@ -138,14 +141,27 @@ bool NodalSystem::adopt(const NodalSystem& other, bool is_pulled)
     return !is_pulled || (nodes_.constrain(layout_, false) && pull(true));
 }
 
-bool NodalSystem::begin_with(const double* X, const double* low, const std::vector<double>& momenta)
+bool NodalSystem::put(int A, const double* X, const double* low)
 {
-    conditions_->begin_with(momenta);
-    if (!nodes_.place_at(0, X, low)) return true;
+    if (!nodes_.place_at(A, X, low)) return true;
     const double before = correction_;
     if (!nodes_.constrain(layout_, in_use_) || !pull(true)) return false;
     correction_ = std::max(correction_, before);
     measure();
+    return true;
+}
+
+bool NodalSystem::meet(int A, const double* X, const double* low)
+{
+    constexpr double rounding = 1e-13;   // lengths, and of directors
+    const double *own = nodes_.X(A), *own_low = nodes_.low(A);
+    for (std::size_t i = 0; i < 12 * tables_.bodies.size(); ++i) {
+        const double off = std::abs((X[i] - own[i]) + (low[i] - own_low[i]));
+        const double size = i % 12 < 3 ? std::max(tables_.length, std::abs(X[i])) : 1;
+        if (!(off <= rounding * size)) return put(A, X, low);
+    }
+    if (!nodes_.place_at(A, X, low)) return true;
+    for (int e = layout_.first_element(A); e <= layout_.last_element(A); ++e) nodes_.take_differences(e);
     return true;
 }
 

@@ -36,7 +36,17 @@ public:
     /// layout's states are not known. False: not finite, or too far away.
     bool adopt(const NodalSystem& other, bool is_pulled);
     /// The first node becomes this place, pulled onto the joints, and its momenta these. False: not finite.
-    bool begin_with(const double* X, const double* low, const std::vector<double>& momenta);
+    bool begin_with(const double* X, const double* low, const std::vector<double>& momenta)
+    {
+        conditions_->hold(false, momenta);
+        return put(0, X, low);
+    }
+    /// An unknown node becomes this place, pulled onto the joints. False: not finite.
+    bool put(int A, const double* X, const double* low);
+    /// The same where it is there already but for rounding: nothing is pulled.
+    bool meet(int A, const double* X, const double* low);
+    /// Angles of loads where the window begins, or about there.
+    void begin_angles(const std::vector<double>& angles) { layout_.angles = angles; }
     /// Rows of balances and conditions with the opposite sign, in the null spaces of a sink that has begun.
     std::vector<double> rows_in(Elimination& formed) const;
     /// Placed nodes may lie far from the constraints: pulls until the bases fit the nodes. False: not finite.

@@ -50,6 +50,12 @@ void NodalWindow::solve_for(const BorderedWindow& other, std::span<double> dx)
 /// The mesh's number of the stretch's element end.
 int NodalWindow::mesh_end(int end) const { return ends_.is_backwards() ? last_ - end : first_ + end; }
 
+void NodalWindow::be_part(ChainEnds& ends, const WindowLayout::Part& part)
+{
+    layout_.part = part;
+    system_.conditions()->be_part(ends, part.n_joins);
+}
+
 void NodalWindow::restart()
 {
     record_.begin_anew();

@@ -27,6 +27,8 @@ public:
     /// Goes on from the state that the ends have now, over the elements that the mesh has now, as another
     /// motion. What was learnt of the last element stays.
     void restart();
+    /// The elements are those of one of several ranks, whose chains `ends` closes.
+    void be_part(ChainEnds& ends, const WindowLayout::Part& part);
     bool open(int first, int last, SolveReport& report) override;
     NodalSystem& equations() override { return system_; }
     const NodalSystem& equations() const { return system_; }
