@@ -3,6 +3,8 @@
 // coordinates. Angles are unwrapped where the force depends on them.
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "livens/base/error.h"
 #include "livens/base/text.h"
@@ -211,44 +213,50 @@ Load joint_spring(const std::string& name, const NamedCoordinate& coordinate, co
                   const JointLimits& limits, const Configurations& X)
 {
     const bool is_angle = coordinate.coordinate.is_angle();
-    AlongJoint of{LoadCoordinate(coordinate.coordinate, coordinate.at_stated, X), spring, springs_at(limits)};
-    Load load = start_load(name, "joint_spring", of.along.bodies());
+    AlongJoint placed{LoadCoordinate(coordinate.coordinate, coordinate.at_stated, X), spring,
+                      springs_at(limits)};
+    Load load = start_load(name, "joint_spring", placed.along.bodies());
     check_joint_spring(load, spring, limits);
     load.depends_on_X = true;
     load.depends_on_V = spring.damping > 0 || (limits.acts() && limits.damping > 0);
-    load.needs_directors = of.along.needs_directors();
+    load.needs_directors = placed.along.needs_directors();
     // A damper alone does not read the angle, so it works in families that do not count turns.
-    const bool reads_angle = is_angle && (of.is_elastic() || spring.preload != 0 || !of.limits.empty());
-    of.along.place(load, reads_angle);
+    const bool reads_angle =
+        is_angle && (placed.is_elastic() || spring.preload != 0 || !placed.limits.empty());
+    placed.along.place(load, reads_angle);
+    // One for all functions of the load and its copies.
+    const auto of = std::make_shared<const AlongJoint>(std::move(placed));
     if (reads_angle) load.domain = domain_of(coordinate.coordinate.kind);
     load.forces = [of](const LoadArguments& arguments, LoadForces& F) {
-        of.along.add_forces(arguments, of.force(of.along.look(arguments)).force, F);
+        of->along.add_forces(arguments, of->force(of->along.look(arguments)).force, F);
     };
-    load.forces.record = [of](LoadTape& tape, const TapeNumber& factor) { of.record(tape, factor); };
+    load.forces.record = [of](LoadTape& tape, const TapeNumber& factor) { of->record(tape, factor); };
     load.tangent = [of](const LoadArguments& arguments, LoadTangent& tangent) {
-        of.along.add_tangent(arguments, of.force(of.along.look(arguments)), tangent);
+        of->along.add_tangent(arguments, of->force(of->along.look(arguments)), tangent);
     };
     load.products = [of](const LoadArguments& arguments) {
-        const LawValue Q = of.force(of.along.look(arguments));
+        const LawValue Q = of->force(of->along.look(arguments));
         ProductSlopes found(arguments.X.size());
-        of.along.add_forces(arguments, 1, found.direction);
-        of.along.add_products(arguments, Q.by_value, Q.by_rate, found);
+        of->along.add_forces(arguments, 1, found.direction);
+        of->along.add_products(arguments, Q.by_value, Q.by_rate, found);
         return std::vector{std::move(found)};
     };
-    load.guards = of.guards();
+    load.guards = of->guards();
     if (!load.guards.empty())
         load.guarded = [of](const LoadArguments& arguments, std::span<double> numbers) {
-            of.guarded(of.along.look(arguments), numbers);
+            of->guarded(of->along.look(arguments), numbers);
         };
-    load.potential = [of](const LoadArguments& arguments) { return of.potential(of.along.look(arguments)); };
-    load.power = [of](const LoadArguments& arguments) { return of.power(of.along.look(arguments)); };
-    load.recorded_power = [of](LoadTape& tape) { return of.recorded_power(tape); };
+    load.potential = [of](const LoadArguments& arguments) {
+        return of->potential(of->along.look(arguments));
+    };
+    load.power = [of](const LoadArguments& arguments) { return of->power(of->along.look(arguments)); };
+    load.recorded_power = [of](LoadTape& tape) { return of->recorded_power(tape); };
     load.readings = {{"effort", is_angle ? "N m" : "N", [of](const LoadArguments& arguments) {
-                          return of.force(of.along.look(arguments)).force + 0.0;   // no -0
+                          return of->force(of->along.look(arguments)).force + 0.0;   // no -0
                       }}};
-    if (of.limits.empty()) return load;
+    if (of->limits.empty()) return load;
     load.readings.push_back({"penetration", is_angle ? "rad" : "m", [of](const LoadArguments& arguments) {
-                                 return of.penetration(of.along.look(arguments));
+                                 return of->penetration(of->along.look(arguments));
                              }});
     load.readings.push_back({"limit_stiffness", is_angle ? "N m/rad" : "N/m",
                              [stiffness = limits.stiffness](const LoadArguments&) { return stiffness; }});
