@@ -2085,10 +2085,18 @@ livens_mutant(NAME impact_handed_on
               TESTS_OF unit_io
               MUST_FAIL Stops.AreMetThroughBodiesThatTouch)
 
+# Phases share what acts although an event has changed that: a stop that closes holds nothing.
+livens_mutant(NAME phases_as_before
+              FILE spacetime/phases/phase_model.cpp
+              OLD [[if (acting_by_ == decisions.changes() && joints == joints_ && !reads_reactions_) {]]
+              NEW [[if (acting_by_ >= 0 && !reads_reactions_) {]]
+              TESTS_OF unit_io
+              MUST_FAIL Stops.WithoutRestitutionTheyCloseAtOnce)
+
 # What the polynomial says is about to come without the slack of stops: bodies side by side meet at each element.
 livens_mutant(NAME come_by_rounding
               FILE spacetime/phases/event_watch.cpp
-              OLD [[return slack_[e] > 0 ? margin(e, state) > slack_[e] : holds_at(e, state);]]
+              OLD [[return slack(e) > 0 ? margin(e, state) > slack(e) : holds_at(e, state);]]
               NEW [[return holds_at(e, state);]]
               TESTS_OF unit_io
               MUST_FAIL Stops.AreMetThroughBodiesThatTouch)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "livens/spacetime/phases/phase_model.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace livens::inline spacetime_internal {
@@ -23,21 +22,20 @@ void PhaseModel::begin(const Decisions& decisions, double first, double last, co
     for (int j = 0; j < static_cast<int>(model.joints().size()); ++j)
         if (model.joints()[j].acts_at(middle)) joints.push_back(j);
     // Which reactions are unique is asked for where a phase begins.
-    const auto reads_reactions = [](const Event& event) { return !event.terms.reactions.empty(); };
-    const bool is_as_before = acting_by_ == decisions.changes() && joints == joints_ &&
-                              std::ranges::none_of(stated_.events(), reads_reactions);
-    if (is_as_before) {
+    if (acting_by_ == decisions.changes() && joints == joints_ && !reads_reactions_) {
         if (watch_ != nullptr) watch_->begin_again(start, slack);
         return;
     }
     watch_.reset();
     acting_by_ = -1;   // until all of it is there
+    reads_reactions_ = false;
     acting_ = acting_at(model, middle);
     if (!stated_.events().empty()) {
         std::vector<bool> armed;
         for (const Event& event : stated_.events()) {
             const bool is_idle = event.action.does == EventAction::Does::end_motion && !ends_by_events_;
             armed.push_back(!is_idle && decisions.is_armed(event.action, first));
+            reads_reactions_ = reads_reactions_ || (armed.back() && !event.terms.reactions.empty());
         }
         watch_ = std::make_unique<EventWatch>(stated_, std::move(acting_), std::move(armed), start, slack);
     }

@@ -34,7 +34,8 @@ private:
     int decided_by_ = -1;            // see Decisions::changes()
     ActingModel acting_;
     int acting_by_ = -1;
-    std::vector<int> joints_;   // that act
+    std::vector<int> joints_;        // that act
+    bool reads_reactions_ = false;   // an armed event
     std::unique_ptr<EventWatch> watch_;
 };
 
