@@ -2108,7 +2108,7 @@ livens_mutant(NAME slack_is_no_event
                 return end_at_event(phase, fired, solved);]]
               NEW [[                break;]]
               TESTS_OF unit_io
-              MUST_FAIL Stops.PassImpactsOnOverAnyDistance)
+              MUST_FAIL ToldErrorsOfImpacts.NeighboursThatTouchWithoutEndAreGivenUp)
 
 # Speeds of impacts by the row of a distance, which is of its square.
 livens_mutant(NAME speed_of_squares

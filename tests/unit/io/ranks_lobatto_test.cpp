@@ -53,7 +53,7 @@ const Case of_states[] = {
     {"from a state", rates + lobatto("end = 0.5\nelements = 41", 3)},
     {"linear", rates + lobatto("end = 0.1\nelements = 40", 1)},
     {"a loop", loop + lobatto("end = 0.5\nelements = 30", 4)},
-    {"a law that counts turns, and a drive", turning + lobatto("end = 1.5\nelements = 60", 3)},
+    {"a law that counts turns, and a drive", turning + lobatto("end = 1\nelements = 40", 3)},
     {"driven alone",
      body("fan", "[3, 0, 0]") +
          joint("revolute", "shaft", "[\"world\", \"fan\"]", "[3, 0, 0]", "[1, 0, 0]\nrate = 9") +
