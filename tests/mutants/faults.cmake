@@ -2093,6 +2093,14 @@ livens_mutant(NAME phases_as_before
               TESTS_OF unit_io
               MUST_FAIL Stops.WithoutRestitutionTheyCloseAtOnce)
 
+# Where polynomials have kinks a top between them is not asked for by states.
+livens_mutant(NAME tops_of_polynomials
+              FILE spacetime/phases/near_misses.cpp
+              OLD [[if (has_top || from > other.end()) continue;]]
+              NEW [[continue;]]
+              TESTS_OF unit_io
+              MUST_FAIL ToldErrorsOfImpacts.GrazesThatKinksHideAreUndecided)
+
 # What the polynomial says is about to come without the slack of stops: bodies side by side meet at each element.
 livens_mutant(NAME come_by_rounding
               FILE spacetime/phases/event_watch.cpp

@@ -13,7 +13,7 @@ namespace livens {
 namespace {
 
 /// Of the error of an instant that of the next one has at least: both solutions may agree by chance.
-constexpr double kept_error = 0.5;
+constexpr double kept_error = 0.2;
 
 /// Whether an element end that is neither the first nor the last is where a law bends.
 bool has_bend(const Motion& motion, const TimeMesh& mesh, double end)

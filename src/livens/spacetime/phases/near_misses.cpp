@@ -15,7 +15,8 @@ namespace livens::inline spacetime_internal {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
+                 infinite = std::numeric_limits<double>::infinity();
 constexpr double sure = 3;   // times the difference of two motions
 constexpr int most_shrinks = 24;
 
@@ -40,6 +41,15 @@ public:
     {
         return watch_.margin(event, at(element, s, motion_));
     }
+    /// Where states at both ends of an element say that a margin has a top between them: how high, by its
+    /// rates there. Kinks of polynomials between elements may hide it. Minus infinity: they do not.
+    double top_by_states(int event, int element, double at_start) const
+    {
+        const double h = motion_.mesh.length(element), first = rate(event, motion_.at_end(element), h),
+                     last = rate(event, motion_.at_end(element + 1, Side::left), h),
+                     bend = (last - first) / h;
+        return first > 0 && last < 0 ? at_start - first * first / (2 * bend) : -infinite;
+    }
     /// Angles as they are at the end of an element.
     void pass(int element, int n_looks)
     {
@@ -56,6 +66,17 @@ private:
         start.angles = angles;
         return EventWatch(model, acting_at(model, middle), std::vector<bool>(model.events().size(), true),
                           start);
+    }
+
+    double rate(int event, State state, double h) const
+    {
+        constexpr double share = 1e-4;
+        const double way = share * h;
+        state.angles = angles_;
+        const double before = watch_.margin(event, state);
+        state.t += way;
+        for (std::size_t b = 0; b < state.X.size(); ++b) state.X[b] += way * state.V[b];
+        return (watch_.margin(event, state) - before) / way;
     }
 
     const Motion& motion_;
@@ -111,16 +132,23 @@ double undecided_place(const Model& model, const Motion& motion, const Motion& o
             for (int k = 0; k <= n_looks; ++k) seen.push_back(f(k / double(n_looks)));
             const double range = *std::ranges::max_element(seen) - *std::ranges::min_element(seen);
             if (range <= looks->watch().slack(event)) continue;   // bodies move side by side
+            const auto apart_at = [&](double s, double here) {
+                return std::abs(looks->watch().margin(event, looks->at(e, s, other)) - here);
+            };
+            bool has_top = *std::ranges::max_element(seen) >= 0;
             for (int k = 1; k < n_looks; ++k) {
                 const bool is_top = seen[k] < 0 && seen[k] >= seen[k - 1] && seen[k] >= seen[k + 1];
+                has_top = has_top || is_top;
                 if (!is_top || !(-seen[k] < range)) continue;
                 const double s = highest(f, (k - 1) / double(n_looks), (k + 1) / double(n_looks));
                 const double t = from + s * motion.mesh.length(e);
                 if (t > other.end()) continue;
-                const double lacking = -f(s),
-                             apart = std::abs(looks->watch().margin(event, looks->at(e, s, other)) + lacking);
-                if (!(lacking > sure * apart)) return t;
+                const double lacking = -f(s);
+                if (!(lacking > sure * apart_at(s, -lacking))) return t;
             }
+            if (has_top || from > other.end()) continue;
+            const double lacking = -looks->top_by_states(event, e, seen[0]);
+            if (!(lacking > sure * apart_at(0, seen[0]))) return from;
         }
         looks->pass(e, n_looks);
     }
