@@ -91,6 +91,8 @@ def solve(model: Model, time: Time = None, *, accuracy: Number | None = None, el
         raise TypeError(f"solve() takes a livens.Model first, not {type(model).__name__}")
     if not (guess is None or isinstance(guess, Solution)):
         raise TypeError(f"a guess is a livens.Solution, not {type(guess).__name__}; lv.load_solution() reads one from a file")
+    if callable(until):
+        raise TypeError('until= is a condition in words; Model.add_guard(.., action="stop") takes a function')
     of_time = dict(accuracy=accuracy, elements=elements, until=until, output=output, breaks=breaks, periodic=periodic)
     overrides = _overrides(model, time, of_time, method, options, start, end)
     scenario = model._scenario(overrides)

@@ -69,3 +69,9 @@ def test_what_is_no_number_is_refused() -> None:
         pendulum().add_guard("g", not_callable)
     with pytest.raises(lv.InputError, match="is a Python function, so the model cannot be written"):
         later.to_toml()
+
+
+def test_the_end_of_time_takes_words_and_names_guards() -> None:
+    until: Any = lambda t: t - 0.5   # noqa: E731
+    with pytest.raises(TypeError, match="add_guard"):
+        lv.solve(pendulum(), 1, until=until)
