@@ -1111,7 +1111,7 @@ livens_mutant(NAME supplies_turn_the_other_way
 
 # Joints that close loops take no forces in the tangent.
 livens_mutant(NAME loops_are_open_in_the_tangent
-              FILE spacetime/nodal/kernel/tree_tangent.cpp
+              FILE spacetime/nodal/kernel/tree_joints.cpp
               OLD [[J[(i * p + lane) * m * p + r * p + lane] = of[r * d + i];]]
               NEW [[;]]
               TESTS_OF unit_spacetime

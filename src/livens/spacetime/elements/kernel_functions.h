@@ -35,6 +35,11 @@ struct BlockSize {
     int n, f, p;
 };
 
+/// Rows of a joint, freedoms of the body that it holds and of that one's parent, and nodes.
+struct JointSize {
+    int m, d, n, p;
+};
+
 /// Of dense blocks, row by row, whose rows and columns are numbers at p nodes: (i, A) is row i p + A.
 struct BlockFunctions {
     /// out (k, A; .) += sum_i M (i, k; A) J (i, A; .), rows of `out` that far apart.
@@ -51,6 +56,11 @@ struct BlockFunctions {
     bool (*factorise_square)(double* A, int* exchanged, int n);
     /// x <- A^-1 x for all columns.
     void (*solve_square)(const double* A, const int* exchanged, int n, double* x, int columns);
+    /// From rows own (m, d; A) and above (m, n; A): z (d, d - m; A) spans what they leave free, and
+    /// y = T y_parent with T (d, n; A) fulfils them. False: with the same order of twists at all nodes what
+    /// is left of a row or twist across those before is less than `least` of it, or there are too few nodes.
+    bool (*move_joint)(const double* own, const double* above, const JointSize&, double least, double* z,
+                       double* T);
 };
 
 /// The functions of one set of instructions for W lanes.

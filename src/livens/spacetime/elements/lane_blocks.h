@@ -5,26 +5,10 @@
 
 #include "livens/dynamics/lanes/lane_arithmetic.h"
 #include "livens/spacetime/elements/kernel_functions.h"
+#include "livens/spacetime/elements/lane_joints.h"
 
 namespace livens::lanes {
 namespace {
-
-/// Of registers that hold eight, half: blocks are small.
-constexpr int part = LIVENS_REGISTER < 4 ? LIVENS_REGISTER : 4;
-
-template <int W>
-LIVENS_INLINE Lanes<W> load_anywhere(const double* x)
-{
-    Lanes<W> v;
-    __builtin_memcpy(&v, x, sizeof v);
-    return v;
-}
-
-template <int W>
-LIVENS_INLINE void store_anywhere(double* x, const Lanes<W>& v)
-{
-    __builtin_memcpy(x, &v, sizeof v);
-}
 
 /// Factors a_k of rows x_k, that many, apart as said.
 struct Terms {
@@ -216,8 +200,8 @@ void solve_square(const double* A, const int* exchanged, int n, double* x, int c
     }
 }
 
-constexpr BlockFunctions blocks_of{add_from_left,  add_from_right,   subtract_product,
-                                   subtract_times, factorise_square, solve_square};
+constexpr BlockFunctions blocks_of{add_from_left,    add_from_right, subtract_product, subtract_times,
+                                   factorise_square, solve_square,   move_joint};
 
 }   // namespace
 }   // namespace livens::lanes

@@ -132,6 +132,7 @@ NewtonReport March::attempt(const Elements& of)
     const bool soon =
         options_.controller != nullptr && troubles_.shortened < most_shortened && is_tangent_too_costly(of);
     const bool is_quick = !options_.solve.by_newton;
+    if (options_.controller != nullptr) window_.monitor().hold_back(options_.controller->held_back());
     const bool is_solved = is_quick && window_.monitor().solve(newton_options_, soon, outcome);
     const bool is_left = !is_solved && is_quick && is_tangent_too_costly(of);
     if (is_solved) iterations = outcome.iterations;

@@ -119,14 +119,20 @@ void StepSizeController::accepted(double length, double jump, int steps, bool ha
     const double ease = steps > most_steps ? std::clamp(far_too_many / steps, least_ease, 1.0) : grow;
     const double most = std::max(ease * length, tried);
     const bool is_rounding = jump < 100 * least_jump;
-    regained_ *= regain;
-    blind_length_ *= regained_;
+    blind_.second *= regain;
+    blind_.first *= blind_.second;
     const double trend = is_rounding ? 1 : trend_to(length * power(jump, -1.0 / (degree_ + 1)));
-    length_ = is_rounding ? most : std::clamp(trend * suggestion(length, jump), shrink * length, most);
-    length_ = std::min(length_, std::max(blind_length_, length));
+    const double longest = std::max(grow * length, most);
+    const double whole = is_rounding ? longest : std::max(trend * suggestion(length, jump), shrink * length);
+    length_ = std::min(whole, most);
+    length_ = std::min(length_, std::max(blind_.first, length));
+    held_back_ = std::max(std::min({whole, longest, std::max(blind_.first, length)}) / length_, 1.0);
     if (has_factor && length_ > length && length_ < worth_a_factor * length) length_ = length;
     last_refused_.first -= length;
-    if (last_refused_.first > 1e-3 * length) length_ = std::min(length_, last_refused_.second);
+    if (last_refused_.first > 1e-3 * length && length_ > last_refused_.second) {
+        length_ = last_refused_.second;
+        held_back_ = 1;
+    }
     if (is_rounding && tells_length_) return;
     if (!is_rounding && !tells_length_) sum_of_scales_ = n_accepted_ = 0;
     tells_length_ = !is_rounding;
@@ -136,9 +142,9 @@ void StepSizeController::accepted(double length, double jump, int steps, bool ha
 
 void StepSizeController::too_dear(double length)
 {
-    blind_length_ = below_blind * length;
-    regained_ = 1;
-    length_ = std::min(length_, blind_length_);
+    blind_.first = below_blind * length;
+    blind_.second = 1;
+    length_ = std::min(length_, blind_.first);
 }
 
 bool StepSizeController::rejected(double length, double jump, double most)
@@ -146,8 +152,8 @@ bool StepSizeController::rejected(double length, double jump, double most)
     if (most == 0) most = largest_jump_;
     const bool is_lie = !(jump <= acceptable_velocity_jump);
     if (is_lie) {
-        blind_length_ = below_blind * length;
-        regained_ = 1;
+        blind_.first = below_blind * length;
+        blind_.second = 1;
     }
     const double whole =
         std::min(suggestion(length, jump), 0.9 * length * power(most / jump, 1.0 / (degree_ + 1)));

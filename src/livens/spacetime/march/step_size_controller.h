@@ -40,6 +40,8 @@ public:
     const std::vector<double>& left() const { return left_; }
     /// `steps`: of the iteration; `has_factor`: one that serves the next element if that is as long.
     void accepted(double length, double jump, int steps, bool has_factor = false);
+    /// How many times as long the next element might be if the last one had taken fewer steps.
+    double held_back() const { return held_back_; }
     /// What such an element took costs more than shorter ones do: these go on for a while.
     void too_dear(double length);
     /// The next element is as long as this, if no stop is nearer.
@@ -71,8 +73,9 @@ private:
     Points points_;
     int degree_;
     double tolerance_, length_, largest_jump_;
-    double blind_length_ = std::numeric_limits<double>::infinity(), regained_ = 1;
-    std::vector<double> stops_, left_;                 // ascending
+    double held_back_ = 1;
+    std::pair<double, double> blind_{std::numeric_limits<double>::infinity(), 1};   // length, what it regains
+    std::vector<double> stops_, left_;                                              // ascending
     std::pair<std::vector<double>, double> sampled_;   // stops that may be left, error
     // Of the last element that was refused: what is not solved yet, and how long elements may be in it.
     std::pair<double, double> last_refused_{0, 0};

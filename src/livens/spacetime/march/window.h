@@ -71,6 +71,8 @@ public:
     /// to the same digits. False: nothing was found, the window is as before. `soon`: or nothing at all,
     /// since shorter elements are free to be tried.
     virtual bool solve(const NewtonOptions&, bool /*soon*/, NewtonReport&) { return false; }
+    /// The next element might be so many times as long, as far as its error goes, if it took fewer steps.
+    virtual void hold_back(double /*longer*/) {}
     /// What a tangent of the open window costs, in elements that solve() solves; 0: it solves none.
     virtual double tangent_cost() const { return 0; }
     /// Where the only element of the open window, as iterations left it, is too near to a singular position:

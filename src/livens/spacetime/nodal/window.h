@@ -47,6 +47,7 @@ public:
 
 private:
     bool solve(const NewtonOptions& options, bool soon, NewtonReport& report) override;
+    void hold_back(double longer) override { kernel_.hold_back(longer); }
     double tangent_cost() const override;
     /// Nodes that are far from their constraints say nothing of it.
     RankLoss rank_loss() const override

@@ -12,6 +12,7 @@ namespace {
 
 /// Of a joint's rows on its outer body, by their own size: nearly dependent ones do not tell how it moves.
 constexpr double least_of_rows = 1e-6;
+constexpr int most_nodes = 18;   // degrees that have lanes
 
 /// The part of v across q_0 .. q_n-1, rows of d numbers; R, if it is there, takes what is taken off.
 double orthogonalise(const double* q, int n, int d, double* v, double* R, int stride)
@@ -73,54 +74,92 @@ bool motion_of(const double* own, int m, int d, const double* above, int n, doub
 
 }   // namespace
 
-void NodeGradients::of(const JointRows& joint, int b, int node, double* G) const
+GradientPlaces::GradientPlaces(const ModelTables& tables, const RowPattern& pattern, const JointRows& joint,
+                               int b)
 {
+    if (b == world) return;
     const BodyTable& body = tables.bodies[b];
     const lanes::Pattern& all = pattern.view();
-    std::fill_n(G, joint.n() * body.dofs, 0.0);
+    size = joint.n() * body.dofs;
+    const auto put = [&](int i, int twist, int from, double value) {
+        const int k = twist - body.first;
+        if (k >= 0 && k < body.dofs) parts.push_back({i * body.dofs + k, from, value});
+    };
     for (int i = 0; i < joint.n(); ++i) {
         const int row = joint.rows[static_cast<std::size_t>(i)];
-        const auto put = [&](int twist, double value) {
-            const int k = twist - body.first;
-            if (k >= 0 && k < body.dofs) G[i * body.dofs + k] += value;
-        };
         for (int u = all.gradients.unit_begin[row]; u < all.gradients.unit_begin[row + 1]; ++u)
-            put(all.gradients.units[u].twist, all.gradients.units[u].value);
+            put(i, all.gradients.units[u].twist, -1, all.gradients.units[u].value);
         const lanes::Group* group = all.groups;
         while (row >= group->first + group->n) ++group;
         for (int c = group->columns; c < group[1].columns; ++c) {
-            const int entry = all.gradients.columns[c].entry + row - group->first;
-            const int lane = node == p ? 0 : node;
-            put(all.gradients.columns[c].twist,
-                node == 0 ? start.gradients[entry] : nodes.gradients[entry * width + lane]);
+            const lanes::Column& column = all.gradients.columns[c];
+            put(i, column.twist, column.entry + row - group->first, 0);
         }
     }
 }
 
-bool NodeGradients::find(int b, const TreePlan& plan, JointMotion& motion) const
+void NodeGradients::of(const GradientPlaces& places, int node, double* G) const
 {
-    const JointRows& joint = plan.held[static_cast<std::size_t>(b)];
-    const int above = plan.parent[static_cast<std::size_t>(b)], m = joint.n(), d = tables.bodies[b].dofs;
-    const int n = above == world ? 0 : tables.bodies[above].dofs;
-    if (m > d) return false;
-    motion.f = d - m;
-    for (Numbers* z : {&motion.z_rows, &motion.z_columns})
-        z->resize(static_cast<std::size_t>(d * motion.f * p));
-    for (Numbers* T : {&motion.T_rows, &motion.T_columns}) T->resize(static_cast<std::size_t>(d * n * p));
-    for (int node = 0; node <= p; ++node) {
-        double own[36], over[36], z[36], T[36];
-        if (m > 0) of(joint, b, node, own);
-        if (m > 0 && above != world) of(joint, above, node, over);
-        if (!motion_of(own, m, d, over, n, z, T)) return false;
-        const auto put = [&](Numbers& to, const double* from, int size, int lane) {
-            for (int i = 0; i < size; ++i) to[i * p + lane] = from[i];
-        };
-        if (is_row(node)) put(motion.z_rows, z, d * motion.f, node % p);
-        if (is_row(node)) put(motion.T_rows, T, d * n, node % p);
-        if (node > 0) put(motion.z_columns, z, d * motion.f, node % p);
-        if (node > 0) put(motion.T_columns, T, d * n, node % p);
-    }
+    std::fill_n(G, places.size, 0.0);
+    for (const GradientPlaces::Part& part : places.parts)
+        G[part.to] += part.from < 0 ? part.value
+                      : node == 0   ? start.gradients[part.from]
+                                    : nodes.gradients[part.from * width + node % p];
+}
+
+HeldBody::HeldBody(const ModelTables& tables, const RowPattern& pattern, const TreePlan& plan, int b)
+    : size_{plan.held[static_cast<std::size_t>(b)].n(), tables.bodies[b].dofs, 0, 0},
+      own_(tables, pattern, plan.held[static_cast<std::size_t>(b)], b),
+      above_(tables, pattern, plan.held[static_cast<std::size_t>(b)],
+             plan.parent[static_cast<std::size_t>(b)])
+{
+    const int above = plan.parent[static_cast<std::size_t>(b)];
+    if (above != world) size_.n = tables.bodies[above].dofs;
+}
+
+bool HeldBody::find_at(const NodeGradients& gradients, int node, Numbers& z_of_all, Numbers& T_of_all) const
+{
+    const int p = gradients.p, lane = node % p, f = size_.d - size_.m;
+    double own[36], above[36], z[36], T[36];
+    gradients.of(own_, node, own);
+    gradients.of(above_, node, above);
+    if (!motion_of(own, size_.m, size_.d, above, size_.n, z, T)) return false;
+    for (int i = 0; i < size_.d * f; ++i) z_of_all[i * p + lane] = z[i];
+    for (int i = 0; i < size_.d * size_.n; ++i) T_of_all[i * p + lane] = T[i];
     return true;
+}
+
+/// All nodes side by side. False: at one of them the same choice does not serve.
+bool HeldBody::find_columns(const NodeGradients& gradients, JointMotion& motion) const
+{
+    const int p = gradients.p;
+    double own[36 * most_nodes], above[36 * most_nodes];
+    const auto gather = [&](const GradientPlaces& places, double* G) {
+        std::fill_n(G, places.size * p, 0.0);
+        for (const GradientPlaces::Part& part : places.parts)
+            for (int l = 0; l < p; ++l)
+                G[part.to * p + l] +=
+                    part.from < 0 ? part.value : gradients.nodes.gradients[part.from * gradients.width + l];
+    };
+    gather(own_, own);
+    gather(above_, above);
+    return gradients.functions.move_joint(own, above, {size_.m, size_.d, size_.n, p}, least_of_rows,
+                                          motion.z_columns.data(), motion.T_columns.data());
+}
+
+bool HeldBody::find(const NodeGradients& gradients, JointMotion& motion) const
+{
+    const auto p = static_cast<std::size_t>(gradients.p), d = static_cast<std::size_t>(size_.d);
+    if (size_.m > size_.d) return false;
+    motion.f = size_.d - size_.m;
+    motion.z_columns.resize(d * static_cast<std::size_t>(motion.f) * p);
+    motion.T_columns.resize(d * static_cast<std::size_t>(size_.n) * p);
+    if (!find_columns(gradients, motion))
+        for (int node = 1; node <= gradients.p; ++node)
+            if (!find_at(gradients, node, motion.z_columns, motion.T_columns)) return false;
+    motion.z_rows = motion.z_columns;
+    motion.T_rows = motion.T_columns;
+    return !gradients.has_first_row || find_at(gradients, 0, motion.z_rows, motion.T_rows);
 }
 
 }   // namespace livens

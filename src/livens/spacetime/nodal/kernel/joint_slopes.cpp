@@ -47,7 +47,8 @@ Matrix4& JointSlopes::of(int i, int j)
     return found == pairs_.rend() ? pairs_.emplace_back(Pair{i, j, {}}).K : found->K;
 }
 
-void JointSlopes::add_row(int r, double mu, Instant at)
+/// `largest` multiplier of the row at those nodes that this one stands for.
+void JointSlopes::add_row(int r, double mu, double largest, Instant at)
 {
     const RowTable& table = tables_.rows[r];
     double g[RowTables::gradient_size];
@@ -57,7 +58,7 @@ void JointSlopes::add_row(int r, double mu, Instant at)
             for (int i = 0; i < 3; ++i) forces_[12 * table.bodies[side] + a + i] -= mu * g[12 * side + a + i];
         double y[6];
         tables_.scaled_wrench(r, side, X_.data(), g, y);
-        for (const double share : y) terms_ = std::max(terms_, std::abs(mu * share));
+        for (const double share : y) terms_ = std::max(terms_, std::abs(largest * share));
     }
     if (!table.is_quadratic) return add_hessian(r, mu, at);
     for (const RowTable::Entry& entry : table.form)
@@ -155,8 +156,8 @@ SlopesOfPair JointSlopes::by_twists(const Pair& pair) const
     return slopes;
 }
 
-const std::vector<SlopesOfPair>& JointSlopes::find(int node, const WindowLayout& layout,
-                                                   const RowPattern& pattern, const lanes::Values& nodes)
+void JointSlopes::collect(int node, const WindowLayout& layout, const RowPattern& pattern,
+                          const lanes::Values& nodes, const auto& largest)
 {
     const int lane = node % rule_.degree;
     place(lane, nodes);
@@ -164,11 +165,33 @@ const std::vector<SlopesOfPair>& JointSlopes::find(int node, const WindowLayout&
     pairs_.clear();
     slopes_.clear();
     const Instant at{layout.time(rule_, node)};
-    for (std::size_t c = 0; c < pattern.rows().size(); ++c)
-        add_row(pattern.rows()[c], nodes.impulses[static_cast<int>(c) * width_ + lane], at);
+    for (std::size_t c = 0; c < pattern.rows().size(); ++c) {
+        const double* impulses = nodes.impulses + static_cast<int>(c) * width_;
+        add_row(pattern.rows()[c], impulses[lane], largest(impulses), at);
+    }
     for (const Pair& pair : pairs_) slopes_.push_back(by_twists(pair));
     for (int b = 0; b < tables_.n_bodies(); ++b)
         if (tables_.bodies[b].dofs == 6) add_turning(b);
+}
+
+const std::vector<SlopesOfPair>& JointSlopes::find(int node, const WindowLayout& layout,
+                                                   const RowPattern& pattern, const lanes::Values& nodes)
+{
+    collect(node, layout, pattern, nodes,
+            [&](const double* impulses) { return impulses[node % rule_.degree]; });
+    return slopes_;
+}
+
+const std::vector<SlopesOfPair>& JointSlopes::find_middle(int last, const WindowLayout& layout,
+                                                          const RowPattern& pattern,
+                                                          const lanes::Values& nodes)
+{
+    collect(middle_of(last), layout, pattern, nodes, [&](const double* impulses) {
+        double most = 0;
+        for (int node = 1; node <= last; ++node)
+            most = std::max(most, std::abs(impulses[node % rule_.degree]));
+        return most;
+    });
     return slopes_;
 }
 

@@ -19,9 +19,13 @@ public:
     /// At a node where there are rows and columns, with the kernel's numbers and multipliers there.
     const std::vector<SlopesOfPair>& find(int node, const WindowLayout& layout, const RowPattern& pattern,
                                           const lanes::Values& nodes);
+    /// Likewise, for all nodes from 1 to `last`, of which it is one in the middle.
+    const std::vector<SlopesOfPair>& find_middle(int last, const WindowLayout& layout,
+                                                 const RowPattern& pattern, const lanes::Values& nodes);
     /// Largest share of one row in the balances, over all nodes since begin(): what rounding leaves of them.
     double terms() const { return terms_; }
     void begin() { terms_ = 0; }
+    static int middle_of(int last) { return (last + 1) / 2; }
 
 private:
     /// Forces on columns of body i by columns of body j: gradients are X K.
@@ -31,7 +35,9 @@ private:
     };
 
     void place(int lane, const lanes::Values& nodes);
-    void add_row(int r, double mu, Instant at);
+    void collect(int node, const WindowLayout& layout, const RowPattern& pattern, const lanes::Values& nodes,
+                 const auto& largest);
+    void add_row(int r, double mu, double largest, Instant at);
     void add_hessian(int r, double mu, Instant at);
     void add_function(const ConstraintRow& row, const SmoothFunction& function, std::size_t first, double mu);
     void add_form(const QuadraticForm& form, int i, int j, double factor);

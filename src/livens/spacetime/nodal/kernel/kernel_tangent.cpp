@@ -7,6 +7,8 @@ namespace {
 
 constexpr int most_reduced = 48;   // freedoms of all nodes: beyond, a tree costs less
 constexpr double least_factor = 10, factor_of_freedom = 0.65, step_of_freedom = 0.02;   // of all nodes
+constexpr double least_tree = 4, tree_of_node = 2, tree_step = 1.5, tree_of_freedom = 7,
+                 tree_step_of_freedom = 0.25;
 
 }   // namespace
 
@@ -29,7 +31,11 @@ void KernelTangent::use(const std::shared_ptr<const RowPattern>& pattern)
 
 KernelTangent::Cost KernelTangent::cost() const
 {
-    if (!is_reduced_) return {50, 2.7};
+    if (!is_reduced_) {
+        const double more = 6.0 * n_reduced_ / (degree_ * n_twists_) - 1;   // freedoms of a body than a hinge
+        return {least_tree + tree_of_node * degree_ + tree_of_freedom * more,
+                tree_step + tree_step_of_freedom * more};
+    }
     return {least_factor + factor_of_freedom * n_reduced_, 1 + step_of_freedom * n_reduced_};
 }
 

@@ -20,6 +20,8 @@ public:
     bool factorise(const WindowLayout& layout, const JointFactor& start, const lanes::Values& nodes);
     /// step <- - J^-1 rows, in lanes.
     void propose(const lanes::Values& nodes);
+    /// All freedoms are solved for at once.
+    bool is_reduced() const { return is_reduced_; }
     /// Steps by loads alone, which cost less, shrank too little: joints' forces count from now on.
     void ask_joints() { slopes_.has_joints = true; }
     /// In steps of free bodies of the same element: of a factor, and of a step with it.

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double slow_contraction = 0.3;   // of steps by slopes, and of what is about to meet rounding
 constexpr double worse = 1.3;              // than the step before
+constexpr double much_worse = 1.25;        // the second step by slopes mends stiff loads and constraints, too
 constexpr double free_contraction = 0.6;   // of free bodies, whose steps cost a small part of a factor
 constexpr int most_slow_steps = 2,
               most_slow_factors = 5,   // each of these steps is followed by a new factor
@@ -49,7 +50,7 @@ const lanes::Functions* functions_of(const ModelTables& tables, const ElementRul
 struct Shrinking {
     double tolerance;
     bool has_contracted;   // at first: the guess may be right to rounding
-    bool has_slopes = false;
+    bool has_slopes = false, has_dear_factor = false;
     // Known of steps by slopes: of loads, and with joints' forces.
     double rows_rounding = 0, joints_rounding = 0;
     int n_steps = 0, n_slow = 0, n_hopeless = 0;
@@ -91,9 +92,11 @@ struct Shrinking {
         is_rounded = is_done && is_slow && step > allowed;
         has_contracted = has_contracted || !is_slow;
         n_slow += is_slow ? 1 : 0;
-        n_hopeless += is_hopeless ? 1 : 0;
+        n_hopeless += is_hopeless && !is_first_mended() ? 1 : 0;
         return is_done || n_hopeless < (has_slopes ? most_slow_factors : most_slow_steps);
     }
+    /// What it left of the first step says nothing of a factor that costs as much as many steps.
+    bool is_first_mended() const { return has_dear_factor && n_steps == 2 && contraction <= much_worse; }
     /// The same of combined steps, which do not shrink one by one; `left` is what is proposed.
     bool approach(double left, const lanes::Sizes& sizes)
     {
@@ -209,6 +212,7 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
     lanes::Sizes sizes;
     Shrinking progress{std::min(options.tolerance, widest_tolerance), follows};
     progress.has_slopes = kind == Steps::by_tangent;
+    progress.has_dear_factor = progress.has_slopes && !choice_.tangent().is_reduced();
     if (is_accelerated) acceleration_.begin(static_cast<std::size_t>(pattern.n_twists * functions_->width));
     double moved = 0, pivot = 0;   // since the factor was made, lengths and radians; its own, squared
     for (int steps = 0;; ++steps) {
@@ -240,7 +244,8 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
             is_accelerated ? progress.approach(left, sizes) : progress.take(sizes, noise, sums);
         if (!goes_on && kind == Steps::free) choice_.gave_up(progress.contraction, layout.h(0));
         if (!goes_on) return false;
-        const bool is_slow = !progress.is_done && progress.contraction > slow_contraction;
+        const bool is_slow =
+            !progress.is_done && progress.contraction > slow_contraction && !progress.is_first_mended();
         if (kind == Steps::by_tangent && is_slow) choice_.forget_factor();   // rounding says nothing of it
     }
     has_near_factor_ = moved <= fits_for_next * pivot;

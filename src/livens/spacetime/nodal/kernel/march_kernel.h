@@ -33,6 +33,8 @@ public:
     {
         if (serves() && tables_.n_twists < many_twists) guess_.follow(motion);
     }
+    /// See ElementMonitor.
+    void hold_back(double longer) { choice_.hold_back(longer); }
     /// The element of `stretch` from `start`. False: not converged within 14 steps, steps that do not shrink
     /// to 0.3 twice, a number that is not finite, or a pivot that is nearly zero. Steps of many bodies, of
     /// which a tangent would be large, are then combined (Acceleration), unless it has to be told `soon`.

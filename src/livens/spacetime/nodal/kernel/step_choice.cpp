@@ -12,9 +12,12 @@ namespace livens {
 
 namespace {
 
-constexpr int always_allowed = 14;                 // of free bodies, which are always allowed
-constexpr double usual_steps = 8;                  // of an element by slopes, before one was seen
+constexpr int always_allowed = 14;   // of free bodies, which are always allowed
+// Of an element by slopes, before one was seen: of all freedoms at once, along joints, and there with
+// lobatto, whose elements are long while free bodies' steps shrink fast.
+constexpr double usual_steps = 8, usual_along_joints = 10, usual_with_lobatto = 20;
 constexpr double usual_share = 0.25;               // of a factor that an element makes, likewise
+constexpr double worth_slopes = 2;                 // times the length, which elements might have by slopes
 constexpr int first_trial = 8, last_trial = 512;   // elements until steps of free bodies are tried again
 constexpr double dear = 2;                         // elements
 // Factors in an element that say that none is kept for long; how steps of free bodies shrink where they are
@@ -50,7 +53,9 @@ void StepChoice::begin(const std::shared_ptr<const RowPattern>& pattern, const W
     if (pattern == pattern_ || !tangent_) return;
     pattern_ = pattern;
     const KernelTangent::Cost cost = tangent().cost();
-    cost_by_tangent_ = usual_share * cost.factor + usual_steps * cost.step;
+    const double along_joints = may_be_short_ ? usual_with_lobatto : usual_along_joints,
+                 steps = tangent_->is_reduced() ? usual_steps : along_joints;
+    cost_by_tangent_ = usual_share * cost.factor + steps * cost.step;
 }
 
 bool StepChoice::is_dear() const
@@ -73,11 +78,18 @@ bool StepChoice::is_dearer_than_short(int n_factors) const
            given_up_.first * much_shorter * much_shorter < good_contraction;
 }
 
+/// By slopes elements would be as long as their errors let them, and cost less for their length.
+bool StepChoice::is_held_back(int steps) const
+{
+    if (!tangent_ || tangent_->is_reduced()) return false;
+    return longer_ >= worth_slopes && steps * longer_ > cost_by_tangent_;
+}
+
 void StepChoice::factorised(bool is_good, double h)
 {
     is_kept_ = is_good;
     h_ = h;
-    kept_steps_ = n_kept_ = 0;
+    kept_ = {};
     ++n_factors_;
 }
 
@@ -92,7 +104,7 @@ void StepChoice::took(int steps, bool is_solved, bool was_by_tangent)
     last_steps_ = steps;
     if (!was_by_tangent) {
         const bool was_stiff = is_stiff_;
-        is_stiff_ = !is_solved || steps > cost_by_tangent_;
+        is_stiff_ = !is_solved || steps > cost_by_tangent_ || is_held_back(steps);
         if (is_stiff_) trial_after_ = was_stiff ? std::min(2 * trial_after_, last_trial) : first_trial;
         n_until_trial_ = trial_after_;
         return;
@@ -102,10 +114,10 @@ void StepChoice::took(int steps, bool is_solved, bool was_by_tangent)
     n_factors_ = 0;
     --n_until_trial_;
     // a factor is made anew once an element with it costs more than those before did with it, it included
-    const double mean = (cost.factor + cost.step * kept_steps_) / std::max(n_kept_, 1);
-    if (!is_solved || (n_kept_ > 0 && cost.step * steps > mean)) is_kept_ = false;
-    kept_steps_ += steps;
-    ++n_kept_;
+    const double mean = (cost.factor + cost.step * kept_.first) / std::max(kept_.second, 1);
+    if (!is_solved || (kept_.second > 0 && cost.step * steps > mean)) is_kept_ = false;
+    kept_.first += steps;
+    ++kept_.second;
 }
 
 }   // namespace livens

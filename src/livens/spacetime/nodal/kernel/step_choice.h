@@ -21,6 +21,8 @@ public:
 
     /// An element with these rows.
     void begin(const std::shared_ptr<const RowPattern>& pattern, const WindowLayout& layout);
+    /// See ElementMonitor.
+    void hold_back(double longer) { longer_ = longer; }
     /// Such steps first: those of free bodies were many, or did not shrink.
     bool by_tangent() const { return is_stiff_ && n_until_trial_ > 0; }
     /// Beyond, an element costs less by slopes.
@@ -45,14 +47,17 @@ public:
     bool is_dear() const;
 
 private:
+    bool is_held_back(int steps) const;
+
     std::unique_ptr<KernelTangent> tangent_;
     std::shared_ptr<const RowPattern> pattern_;
     bool may_be_short_;   // radau has long elements where motions end soon
     bool is_stiff_ = false, is_kept_ = false;
-    double h_ = 0;
+    double h_ = 0, longer_ = 1;
     std::pair<double, double> given_up_{};   // contraction and length; 0: steps of free bodies never were
     double cost_by_tangent_ = 0;   // of an element, in steps of free bodies, as the last ones had it
-    int last_steps_ = 0, n_until_trial_ = 0, trial_after_ = 0, kept_steps_ = 0, n_kept_ = 0, n_factors_ = 0;
+    int last_steps_ = 0, n_until_trial_ = 0, trial_after_ = 0, n_factors_ = 0;
+    std::pair<int, int> kept_{};   // steps and elements with the last factor
 };
 
 }   // namespace livens::inline spacetime_internal

@@ -3,35 +3,13 @@
 // tangent", Stiff loads).
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
-#include "livens/spacetime/nodal/kernel/joint_motion.h"
-#include "livens/spacetime/nodal/kernel/tangent_slopes.h"
+#include "livens/spacetime/nodal/kernel/tree_forces.h"
 
 namespace livens::inline spacetime_internal {
-
-/// Blocks of pairs of unknowns, made as they are asked for.
-class TreeBlocks {
-public:
-    /// `sizes`: numbers at a node; p nodes.
-    void resize(const std::vector<int>& sizes, int p);
-    void clear();
-    /// Stays where it is until resize().
-    Numbers& of(int u, int v);
-    int size(int u) const { return sizes_[static_cast<std::size_t>(u)]; }
-    /// Where its numbers begin, and those of the one behind the last.
-    int first(int u) const { return first_[static_cast<std::size_t>(u)]; }
-    int n_unknowns() const { return static_cast<int>(sizes_.size()); }
-
-private:
-    int p_ = 0;
-    std::vector<int> sizes_, first_;
-    std::vector<std::deque<std::pair<int, Numbers>>> rows_;   // of each, few others
-};
 
 /// The tangent of KernelTangent, all nodes of a body together, from the leaves inwards.
 class TreeTangent {
@@ -53,24 +31,25 @@ private:
         std::vector<Numbers> E, Et, W;
     };
 
-    void add_mass(double h);
-    void add_loads(const WindowLayout& layout, const lanes::Values& nodes, LoadSlopes& slopes);
-    void add_forces_of_joints(const WindowLayout& layout, const lanes::Values& nodes, TangentSlopes& slopes);
-    void add_loops(const NodeGradients& gradients);
     bool eliminate(int unknown);
     void pass_to_parent(int body);
+    void eliminate_from(int unknown, std::size_t k, const Numbers& Jz);
     void go_inwards(int unknown);
     void go_outwards(int unknown, const lanes::Values& nodes);
     const lanes::BlockFunctions& of_blocks() const { return *functions_->blocks; }
-    int first_loop() const { return tables_.n_bodies(); }
+    int parent(int u) const { return joints_->plan().parent[static_cast<std::size_t>(u)]; }
+    const std::vector<int>& coupled(int u) const
+    {
+        return joints_->plan().coupled[static_cast<std::size_t>(u)];
+    }
 
     const ModelTables& tables_;
     const ElementRule& rule_;
     const lanes::Functions* functions_;
     std::shared_ptr<const RowPattern> pattern_;
-    std::optional<TreePlan> plan_;
+    std::optional<TreeJoints> joints_;
+    TreeForces forces_;
     TreeBlocks blocks_;
-    std::vector<JointMotion> motions_;
     std::vector<Eliminated> gone_;
     Numbers right_, left_, theta_;
 };
