@@ -1101,6 +1101,23 @@ livens_mutant(NAME what_a_child_bears_is_not_its_parents
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.StiffLoadsAreSolvedWithTheirSlopes)
 
+# Forces along a joint do not load its parent where that moves.
+livens_mutant(NAME forces_along_joints_spare_parents
+              FILE spacetime/nodal/kernel/tree_forces.cpp
+              OLD [[for (const Force& force : forces_) add_outer(force.on_parent, force.by_parent, J);]]
+              NEW [[;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL MarchKernel.StiffLoadsAreSolvedWithTheirSlopes)
+
+# Nodes side by side, of which the last few have what joints let bodies do from others.
+livens_mutant(NAME last_nodes_move_like_others
+              FILE spacetime/elements/lane_joints.h
+              RECOMPILE spacetime/elements/lanes_sse2.cpp
+              OLD [[A + W <= of.p ? A : of.p - W]]
+              NEW [[A + W <= of.p ? A : 0]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL JointMotion.KeepsRowsAtAllNodesAtOnce)
+
 # Moments of what loads supply, about the wrong arm.
 livens_mutant(NAME supplies_turn_the_other_way
               FILE dynamics/lanes/load_program.cpp
