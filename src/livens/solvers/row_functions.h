@@ -2,6 +2,8 @@
 // Sums over rows of dense matrices, once for each set of instructions.
 #pragma once
 
+#include <cstddef>
+
 namespace livens::inline solvers_internal {
 
 struct RowFunctions {
@@ -13,6 +15,12 @@ struct RowFunctions {
     void (*reflect)(double* head, double* x, double beta, const double* v, int n);
     /// y -= a u + b v
     void (*subtract_pair)(double* y, double a, const double* u, double b, const double* v, int n);
+    /// y_i -= a_i0 x_0 + a_i1 x_1 + a_i2 x_2 + a_i3 x_3 for so many rows i of n numbers; y_i, a_i and x_k so
+    /// far apart each
+    void (*subtract_fours)(double* y, const double* a, const double* x, std::ptrdiff_t apart, int rows,
+                           int n);
+    /// the largest |x_i|; infinite where one is not finite
+    double (*largest)(const double* x, int n);
 };
 
 /// Of the instructions that are in use; to be asked once for a matrix, not for a row.

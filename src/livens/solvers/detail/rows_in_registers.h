@@ -68,7 +68,49 @@ void subtract_pair(double* __restrict y, double a, const double* __restrict u, d
     for (; i < n; ++i) y[i] -= a * u[i] + b * v[i];
 }
 
-constexpr RowFunctions in_registers{inner, subtract_scaled, reflect, subtract_pair};
+void subtract_fours(double* y, const double* a, const double* x, std::ptrdiff_t apart, int rows, int n)
+{
+    const double *x1 = x + apart, *x2 = x1 + apart, *x3 = x2 + apart;
+    for (int r = 0; r < rows; ++r, y += apart, a += apart) {
+        const double a0 = a[0], a1 = a[1], a2 = a[2], a3 = a[3];
+        if (a0 == 0 && a1 == 0 && a2 == 0 && a3 == 0) continue;
+        const auto take = [=](int i) __attribute__((always_inline))
+        {
+            put(y + i, at(y + i) - a0 * at(x + i) - a1 * at(x1 + i) - a2 * at(x2 + i) - a3 * at(x3 + i));
+        };
+        int i = 0;
+        for (; i + 2 * held <= n; i += 2 * held) {
+            take(i);
+            take(i + held);
+        }
+        for (; i + held <= n; i += held) take(i);
+        for (; i < n; ++i) y[i] = y[i] - a0 * x[i] - a1 * x1[i] - a2 * x2[i] - a3 * x3[i];
+    }
+}
+
+double largest(const double* x, int n)
+{
+    Held most{}, none{};   // the second is zero while all are finite
+    double found = 0, left = 0;
+    int i = 0;
+    for (; i + held <= n; i += held) {
+        const Held v = at(x + i), size = v > -v ? v : -v;
+        most = size > most ? size : most;
+        none += v - v;
+    }
+    for (; i < n; ++i) {
+        const double size = x[i] > -x[i] ? x[i] : -x[i];
+        found = size > found ? size : found;
+        left += x[i] - x[i];
+    }
+    for (int k = 0; k < held; ++k) {
+        found = most[k] > found ? most[k] : found;
+        left += none[k];
+    }
+    return left == 0 ? found : __builtin_inf();
+}
+
+constexpr RowFunctions in_registers{inner, subtract_scaled, reflect, subtract_pair, subtract_fours, largest};
 
 }   // namespace
 }   // namespace livens::inline solvers_internal
