@@ -16,6 +16,9 @@ namespace {
 /// A column of so many numbers is gone through by the places of those that are not zero, if they are few.
 bool goes_by_places(int used, int numbers) { return (numbers < 16 ? 2 : 4) * used <= numbers; }
 
+/// Columns of so few numbers are gone through whole.
+bool is_short(int numbers) { return numbers <= 32; }
+
 }   // namespace
 
 void OrthogonalBasis::resize(int n, int most)
@@ -23,7 +26,8 @@ void OrthogonalBasis::resize(int n, int most)
     n_ = n;
     most_ = most;
     k_ = 0;
-    g_.assign(count(n, most), 0.0);
+    stride_ = n + register_room;
+    g_.assign(static_cast<std::size_t>(most) * static_cast<std::size_t>(stride_), 0.0);
     reflections_.assign(static_cast<std::size_t>(most), {});
     ranges_.assign(static_cast<std::size_t>(most), {0, n});
     places_.assign(count(n, most), 0);
@@ -55,7 +59,11 @@ void OrthogonalBasis::reflect(int j, bool keep_sign, int behind)
     int* places = places_.data() + count(n_, j);
     int used = 0, end = j + 1;
     double tail = 0;
-    for (int i = j + 1; i < behind; ++i) {
+    if (is_short(n_)) {
+        end = behind;
+        tail = row_functions().inner(v + j + 1, v + j + 1, end - j - 1);
+    }
+    for (int i = j + 1; i < behind && !is_short(n_); ++i) {
         if (v[i] == 0) continue;
         tail += v[i] * v[i];
         places[used++] = i;
@@ -64,7 +72,7 @@ void OrthogonalBasis::reflect(int j, bool keep_sign, int behind)
     reflections_[j].end = end;
     reflections_[j].reach = std::max(end, reflections_[j].lead + 1);
     reflections_[j].all_reach = std::max(reflections_[j].reach, j > 0 ? reflections_[j - 1].all_reach : 0);
-    reflections_[j].used = goes_by_places(used, end - j) ? used : -1;
+    reflections_[j].used = !is_short(n_) && goes_by_places(used, end - j) ? used : -1;
     const double head = v[j];
     const double length = std::sqrt(head * head + tail);
     // the kept sign would cancel where head has come close to it
@@ -77,6 +85,7 @@ void OrthogonalBasis::reflect(int j, bool keep_sign, int behind)
     }
     const double scale = 1 / v0;
     for (int i = 0; i < used; ++i) v[places[i]] *= scale;
+    for (int i = j + 1; i < end && is_short(n_); ++i) v[i] *= scale;
     reflections_[j].beta = -v0 / r;
     v[j] = r;
 }
@@ -137,6 +146,22 @@ int OrthogonalBasis::reflect_by_those_before(int j, const RowFunctions& rows)
     return std::max(end, j + 1);
 }
 
+/// The same of short columns, without a look at what is zero but at the ends.
+int OrthogonalBasis::reflect_by_all_before(int j, const RowFunctions& rows)
+{
+    double* x = column(j);
+    std::fill_n(x + n_, register_room, 0.0);
+    auto [first, end] = ranges_[static_cast<std::size_t>(j)];
+    int i = 0;
+    while (i < j && reflections_[static_cast<std::size_t>(i)].all_reach <= first) ++i;
+    if (i < j) {
+        rows.reflect_all(x, g_.data(), stride_, reflections_.data(), i, j);
+        end = std::max(end, reflections_[static_cast<std::size_t>(j) - 1].all_reach);
+    }
+    while (end > j + 1 && x[end - 1] == 0) --end;
+    return std::max(end, j + 1);
+}
+
 double OrthogonalBasis::factorise(int k, bool keep_choices)
 {
     k_ = k;
@@ -144,7 +169,7 @@ double OrthogonalBasis::factorise(int k, bool keep_choices)
     double smallest = 1;
     for (int j = 0; j < k; ++j) {
         if (n_ >= large) Patience::ask();
-        const int end = reflect_by_those_before(j, rows);
+        const int end = is_short(n_) ? reflect_by_all_before(j, rows) : reflect_by_those_before(j, rows);
         lead(j, keep_choices, end);
         reflect(j, keep_choices, std::max(end, reflections_[static_cast<std::size_t>(j)].lead + 1));
         smallest = std::min(smallest, std::abs(column(j)[j]));
@@ -230,7 +255,11 @@ void OrthogonalBasis::null_space(double* z) const
     std::fill(z, z + count(n_, f), 0.0);
     for (int i = 0; i < f; ++i) z[count(k_ + i, f) + static_cast<std::size_t>(i)] = 1;
     for (int j = k_ - 1; j >= 0; --j) {
-        if (reflections_[j].beta != 0) reflect_rows(j, z, rows);
+        const Reflection& one = reflections_[j];
+        if (one.beta != 0 && is_short(n_))
+            rows.reflect_rows(z + count(j, f), f, one.beta, column(j) + j + 1, one.end - j - 1);
+        else if (one.beta != 0)
+            reflect_rows(j, z, rows);
         if (reflections_[j].lead != j)
             std::swap_ranges(z + count(j, f), z + count(j + 1, f), z + count(reflections_[j].lead, f));
     }

@@ -6,6 +6,11 @@
 
 namespace livens::inline solvers_internal {
 
+struct Reflection;
+
+/// Numbers less one of the widest register of these functions.
+inline constexpr int register_room = 3;
+
 struct RowFunctions {
     /// sum of x_i y_i
     double (*inner)(const double* x, const double* y, int n);
@@ -19,6 +24,16 @@ struct RowFunctions {
     /// far apart each
     void (*subtract_fours)(double* y, const double* a, const double* x, std::ptrdiff_t apart, int rows,
                            int n);
+    /// y = sum_k a_k x_k of so many terms, rows of n numbers; a_k and x_k so far apart. Behind rows there is
+    /// register_room, of which anything is read and written.
+    void (*product)(double* y, const double* a, const double* x, std::ptrdiff_t apart, int terms, int n);
+    /// x <- reflections first..last - 1 of an OrthogonalBasis of it, each after its exchange; their columns so far
+    /// apart, and register_room of zeros behind each and behind x.
+    void (*reflect_all)(double* x, const double* columns, std::ptrdiff_t apart, const Reflection* reflections,
+                        int first, int last);
+    /// Rows 1..rows of z, n numbers each, by the reflection 1 - beta [1; v] [1; v]^T with row 0, which is zero
+    /// before.
+    void (*reflect_rows)(double* z, int n, double beta, const double* v, int rows);
     /// the largest |x_i|; infinite where one is not finite
     double (*largest)(const double* x, int n);
 };

@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "livens/solvers/dense.h"
 #include "livens/solvers/row_functions.h"
 
 #ifndef LIVENS_ROW_REGISTER
@@ -88,6 +89,85 @@ void subtract_fours(double* y, const double* a, const double* x, std::ptrdiff_t 
     }
 }
 
+/// The first R registers of a row.
+template <int R>
+inline void multiply(double* y, const double* a, const double* x, std::ptrdiff_t apart, int terms)
+{
+    Held sums[R]{};
+    for (int k = 0; k < terms; ++k, a += apart, x += apart) {
+        const double s = *a;
+        for (int r = 0; r < R; ++r) sums[r] += s * at(x + r * held);
+    }
+    for (int r = 0; r < R; ++r) put(y + r * held, sums[r]);
+}
+
+void product(double* y, const double* a, const double* x, std::ptrdiff_t apart, int terms, int n)
+{
+    constexpr int most = 12;   // registers: some are left for a factor
+    constexpr decltype(&multiply<1>) by_number[most + 1] = {
+        nullptr,     multiply<1>, multiply<2>, multiply<3>,  multiply<4>,  multiply<5>, multiply<6>,
+        multiply<7>, multiply<8>, multiply<9>, multiply<10>, multiply<11>, multiply<12>};
+    for (int left = (n + held - 1) / held; left > 0; left -= most) {
+        by_number[left < most ? left : most](y, a, x, apart, terms);
+        y += most * held;
+        x += most * held;
+    }
+}
+
+void reflect_all(double* x, const double* columns, std::ptrdiff_t apart, const Reflection* reflections,
+                 int first, int last)
+{
+    for (int i = first; i < last; ++i) {
+        const Reflection& one = reflections[i];
+        const double head = x[one.lead];
+        x[one.lead] = x[i];
+        x[i] = head;
+        if (one.beta == 0) continue;
+        const double* v = columns + i * apart + i + 1;
+        double* y = x + i + 1;
+        const int n = one.end - i - 1;
+        Held sums{};
+        for (int k = 0; k < n; k += held) sums += at(v + k) * at(y + k);
+        double t = head;
+        for (int k = 0; k < held; ++k) t += sums[k];
+        t *= one.beta;
+        if (t == 0) continue;   // what is zero stays so, in its sign
+        x[i] = head - t;
+        for (int k = 0; k < n; k += held) put(y + k, at(y + k) - t * at(v + k));
+    }
+}
+
+typedef double HeldTwo __attribute__((vector_size(16)));
+
+/// Of columns as wide as a register, which stays in use.
+template <class Columns>
+inline void reflect_columns(double* z, int apart, double beta, const double* v, int rows)
+{
+    Columns sums{}, row;
+    const double* from = z + apart;
+    for (int i = 0; i < rows; ++i, from += apart) {
+        std::memcpy(&row, from, sizeof(row));
+        sums += v[i] * row;
+    }
+    sums *= beta;
+    const Columns head = -sums;
+    std::memcpy(z, &head, sizeof(head));
+    double* to = z + apart;
+    for (int i = 0; i < rows; ++i, to += apart) {
+        std::memcpy(&row, to, sizeof(row));
+        row -= v[i] * sums;
+        std::memcpy(to, &row, sizeof(row));
+    }
+}
+
+void reflect_rows(double* z, int n, double beta, const double* v, int rows)
+{
+    int c = 0;
+    for (; c + held <= n; c += held) reflect_columns<Held>(z + c, n, beta, v, rows);
+    for (; c + 2 <= n; c += 2) reflect_columns<HeldTwo>(z + c, n, beta, v, rows);
+    for (; c < n; ++c) reflect_columns<double>(z + c, n, beta, v, rows);
+}
+
 double largest(const double* x, int n)
 {
     Held most{}, none{};   // the second is zero while all are finite
@@ -110,7 +190,8 @@ double largest(const double* x, int n)
     return left == 0 ? found : __builtin_inf();
 }
 
-constexpr RowFunctions in_registers{inner, subtract_scaled, reflect, subtract_pair, subtract_fours, largest};
+constexpr RowFunctions in_registers{inner,          subtract_scaled, reflect, subtract_pair,
+                                    subtract_fours, product,         reflect_all, reflect_rows, largest};
 
 }   // namespace
 }   // namespace livens::inline solvers_internal

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Products of null spaces at two nodes are those of the mass between them, body by body.
+#include "livens/spacetime/nodal/mass_products.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "livens/dynamics/rows/twist.h"
+#include "livens/solvers/instructions.h"
+
+namespace livens {
+namespace {
+
+/// A body with skew axes and one with its own, both with centres beside their points, and a point mass.
+Model bodies()
+{
+    Model model({0, 0, 0});
+    Placement turned;
+    turned.directors = Matrix3{0.8, 0.6, 0, -0.6, 0.8, 0, 0, 0, 1};
+    const MassProperties brick = with_center(with_mass(box(1, {1, 0.2, 0.1}), 1.5), {0.5, 0, 0});
+    MassProperties skew = brick;
+    skew.inertia(0, 1) += 0.003;
+    skew.inertia(1, 0) += 0.003;
+    skew.inertia(1, 2) -= 0.002;
+    skew.inertia(2, 1) -= 0.002;
+    model.add_body(rigid_body("skew", skew, turned));
+    model.add_body(point_mass("point", 0.4, {0.3, 1.2, 0.9}));
+    model.add_body(rigid_body("brick", brick));
+    return model;
+}
+
+void expect_masses(int n_nodes)
+{
+    const Model model = bodies();
+    const ModelTables tables(model, {}, false);
+    ASSERT_FALSE(tables.bodies[0].principal);
+    ASSERT_TRUE(tables.bodies[2].principal);
+    const int n = tables.n_twists, f = tables.freedoms(), size = 12 * model.n_bodies();
+    std::mt19937 engine(7);
+    const auto dice = [&engine] { return 2 * (static_cast<double>(engine()) * 0x1p-32) - 1; };
+    std::vector<std::vector<double>> X, maps, Z;
+    MassProducts products(tables, n_nodes);
+    for (int a = 0; a < n_nodes; ++a) {
+        X.emplace_back(static_cast<std::size_t>(size));
+        maps.emplace_back(X[a]);
+        Z.emplace_back(static_cast<std::size_t>(n * f));
+        for (int b = 0; b < model.n_bodies(); ++b) {
+            const double twist[6] = {dice(), dice(), dice(), dice(), dice(), dice()};
+            double by[12] = {};
+            const Matrix34& from = model.bodies()[b].X;
+            if (!model.bodies()[b].is_point) twist::displacement(twist, from.a, by);
+            for (int i = 0; i < 12; ++i) X[a][12 * b + i] = from.a[i] + by[i];
+        }
+        for (double& z : Z[a]) z = dice();
+        tables.bodies.map_twists(X[a].data(), maps[a].data());
+        products.place(a, X[a].data(), maps[a].data(), Z[a].data());
+    }
+    for (int a = 0; a < n_nodes; ++a) {
+        products.multiply(a);
+        for (int b = a; b < n_nodes; ++b)
+            for (int i = 0; i < f; ++i)
+                for (int j = 0; j < f; ++j) {
+                    double expected = 0;
+                    for (int body = 0; body < model.n_bodies(); ++body) {
+                        const double *left = Z[a].data() + tables.bodies[body].first * f + i,
+                                     *right = Z[b].data() + tables.bodies[body].first * f + j;
+                        for (int r = 0; r < 3; ++r) expected += left[r * f] * right[r * f];
+                        if (tables.bodies[body].dofs == 3) continue;
+                        double H[9];
+                        tables.bodies.spin_mass(body, X[a].data(), X[b].data(), H);
+                        for (int r = 0; r < 3; ++r)
+                            for (int c = 0; c < 3; ++c)
+                                expected += left[(3 + r) * f] * H[r + 3 * c] * right[(3 + c) * f];
+                    }
+                    const double found = products.product()[i * products.stride() + (b - a) * f + j];
+                    EXPECT_NEAR(found, expected, 1e-13) << a << ", " << b << ": " << i << ", " << j;
+                }
+    }
+}
+
+TEST(MassProducts, AreThoseOfTheMassBetweenNodes)
+{
+    const Instructions before = instructions();
+    for (const Instructions set : {Instructions::sse2, Instructions::avx2}) {
+        if (!use_instructions(set)) continue;
+        for (const int n_nodes : {2, 3, 4, 7}) expect_masses(n_nodes);
+    }
+    use_instructions(before);
+}
+
+}   // namespace
+}   // namespace livens
