@@ -17,7 +17,8 @@ namespace {
 bool goes_by_places(int used, int numbers) { return (numbers < 16 ? 2 : 4) * used <= numbers; }
 
 /// Columns of so few numbers are gone through whole.
-bool is_short(int numbers) { return numbers <= 32; }
+constexpr int most_short = 32;
+constexpr bool is_short(int numbers) { return numbers <= most_short; }
 
 }   // namespace
 
@@ -59,11 +60,7 @@ void OrthogonalBasis::reflect(int j, bool keep_sign, int behind)
     int* places = places_.data() + count(n_, j);
     int used = 0, end = j + 1;
     double tail = 0;
-    if (is_short(n_)) {
-        end = behind;
-        tail = row_functions().inner(v + j + 1, v + j + 1, end - j - 1);
-    }
-    for (int i = j + 1; i < behind && !is_short(n_); ++i) {
+    for (int i = j + 1; i < behind; ++i) {
         if (v[i] == 0) continue;
         tail += v[i] * v[i];
         places[used++] = i;
@@ -72,7 +69,7 @@ void OrthogonalBasis::reflect(int j, bool keep_sign, int behind)
     reflections_[j].end = end;
     reflections_[j].reach = std::max(end, reflections_[j].lead + 1);
     reflections_[j].all_reach = std::max(reflections_[j].reach, j > 0 ? reflections_[j - 1].all_reach : 0);
-    reflections_[j].used = !is_short(n_) && goes_by_places(used, end - j) ? used : -1;
+    reflections_[j].used = goes_by_places(used, end - j) ? used : -1;
     const double head = v[j];
     const double length = std::sqrt(head * head + tail);
     // the kept sign would cancel where head has come close to it
@@ -85,7 +82,6 @@ void OrthogonalBasis::reflect(int j, bool keep_sign, int behind)
     }
     const double scale = 1 / v0;
     for (int i = 0; i < used; ++i) v[places[i]] *= scale;
-    for (int i = j + 1; i < end && is_short(n_); ++i) v[i] *= scale;
     reflections_[j].beta = -v0 / r;
     v[j] = r;
 }
@@ -146,17 +142,16 @@ int OrthogonalBasis::reflect_by_those_before(int j, const RowFunctions& rows)
     return std::max(end, j + 1);
 }
 
-/// The same of short columns, without a look at what is zero but at the ends.
+/// The same of short columns, which are not looked through.
 int OrthogonalBasis::reflect_by_all_before(int j, const RowFunctions& rows)
 {
     double* x = column(j);
-    std::fill_n(x + n_, register_room, 0.0);
     auto [first, end] = ranges_[static_cast<std::size_t>(j)];
     int i = 0;
-    while (i < j && reflections_[static_cast<std::size_t>(i)].all_reach <= first) ++i;
+    while (i < j && reflections_[i].all_reach <= first) ++i;   // which reach no row
     if (i < j) {
         rows.reflect_all(x, g_.data(), stride_, reflections_.data(), i, j);
-        end = std::max(end, reflections_[static_cast<std::size_t>(j) - 1].all_reach);
+        end = std::max(end, reflections_[j - 1].all_reach);
     }
     while (end > j + 1 && x[end - 1] == 0) --end;
     return std::max(end, j + 1);
@@ -168,11 +163,23 @@ double OrthogonalBasis::factorise(int k, bool keep_choices)
     const RowFunctions& rows = row_functions();
     double smallest = 1;
     for (int j = 0; j < k; ++j) {
-        if (n_ >= large) Patience::ask();
-        const int end = is_short(n_) ? reflect_by_all_before(j, rows) : reflect_by_those_before(j, rows);
-        lead(j, keep_choices, end);
-        reflect(j, keep_choices, std::max(end, reflections_[static_cast<std::size_t>(j)].lead + 1));
-        smallest = std::min(smallest, std::abs(column(j)[j]));
+        double* x = column(j);
+        if (is_short(n_)) {
+            std::fill_n(x + n_, register_room, 0.0);
+            const int end = reflect_by_all_before(j, rows);
+            lead(j, keep_choices, end);
+            Reflection& one = reflections_[j];
+            one.end = one.reach = std::max(end, one.lead + 1);
+            one.all_reach = std::max(one.reach, j > 0 ? reflections_[j - 1].all_reach : 0);
+            one.used = -1;
+            rows.make_reflection(x + j, one.end - j - 1, &one, keep_choices);
+        } else {
+            if (n_ >= large) Patience::ask();
+            const int end = reflect_by_those_before(j, rows);
+            lead(j, keep_choices, end);
+            reflect(j, keep_choices, std::max(end, reflections_[static_cast<std::size_t>(j)].lead + 1));
+        }
+        smallest = std::min(smallest, std::abs(x[j]));
     }
     return smallest;
 }
@@ -183,6 +190,7 @@ double OrthogonalBasis::factorise_pivoted(int k, std::span<int> order)
     const RowFunctions& rows = row_functions();
     for (int j = 0; j < most_; ++j) {
         order[j] = j;
+        std::fill_n(column(j) + n_, register_room, 0.0);
         reflections_[j].norm = inner(column(j), column(j), n_);
     }
     double smallest = 1;
@@ -214,6 +222,13 @@ double OrthogonalBasis::factorise_pivoted(int k, std::span<int> order)
 void OrthogonalBasis::apply_transposed(double* x) const
 {
     const RowFunctions& rows = row_functions();
+    if (is_short(n_)) {
+        double y[most_short + register_room];
+        std::fill_n(std::copy_n(x, n_, y), register_room, 0.0);
+        rows.reflect_all(y, g_.data(), stride_, reflections_.data(), 0, k_);
+        std::copy_n(y, n_, x);
+        return;
+    }
     for (int j = 0; j < k_; ++j) {
         std::swap(x[j], x[reflections_[j].lead]);
         reflect_only(j, x, rows);
@@ -223,6 +238,13 @@ void OrthogonalBasis::apply_transposed(double* x) const
 void OrthogonalBasis::apply(double* x) const
 {
     const RowFunctions& rows = row_functions();
+    if (is_short(n_)) {
+        double y[most_short + register_room];
+        std::fill_n(std::copy_n(x, n_, y), register_room, 0.0);
+        rows.reflect_back(y, g_.data(), stride_, reflections_.data(), k_);
+        std::copy_n(y, n_, x);
+        return;
+    }
     for (int j = k_ - 1; j >= 0; --j) {
         reflect_only(j, x, rows);
         std::swap(x[j], x[reflections_[j].lead]);

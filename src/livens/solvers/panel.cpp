@@ -232,14 +232,12 @@ void Panel::apply_transposed(double* x) const
     for (int k = n_pivots_ - 1; k >= 0; --k) std::swap(x[k], x[exchanged_[k]]);
 }
 
-void Panel::solve(double* x, const double* others) const
+void Panel::solve(double* x) const
 {
     const RowFunctions& rows = row_functions();
     for (int k = n_pivots_ - 1; k >= 0; --k) {
         const double* u = row(k);
-        const double sum = inner(rows, u + n_pivots_, others, width_ - n_pivots_) +
-                           inner(rows, u + k + 1, x + k + 1, n_pivots_ - k - 1);
-        x[k] = (x[k] - sum) / u[k];
+        x[k] = (x[k] - inner(rows, u + k + 1, x + k + 1, width_ - k - 1)) / u[k];
     }
 }
 

@@ -81,10 +81,10 @@ void expect_products(const RowFunctions& rows)
     for (const int terms : {0, 1, 5})
         for (int n = 0; n + register_room < apart; ++n) {
             std::vector<double> y(apart, 9.0);
-            rows.product(y.data(), a.data() + 2, x.data(), apart, terms, n);
+            rows.product(y.data(), {a.data() + 2, 7, x.data(), apart, terms}, n);
             for (int i = 0; i < apart; ++i) {
                 double expected = i < n ? 0 : 9;
-                for (int k = 0; k < terms && i < n; ++k) expected += a[k * apart + 2] * x[k * apart + i];
+                for (int k = 0; k < terms && i < n; ++k) expected += a[7 * k + 2] * x[k * apart + i];
                 if (i < n || i >= n + register_room) {
                     EXPECT_NEAR(y[i], expected, 1e-14) << terms << ", " << n;
                 }

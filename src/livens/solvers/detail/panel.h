@@ -36,8 +36,8 @@ public:
 
     /// n_rows numbers: x <- P x.
     void apply(double* x) const;
-    /// x, n_pivots numbers <- U^-1 (x - T others).
-    void solve(double* x, const double* others) const;
+    /// x, width numbers: the first, of pivots <- U^-1 (x - T others), the others behind them.
+    void solve(double* x) const;
     /// x <- U^-T x, others -= T^T x.
     void solve_transposed(double* x, double* others) const;
     /// x, n_rows numbers <- P^T x.

@@ -91,50 +91,88 @@ void subtract_fours(double* y, const double* a, const double* x, std::ptrdiff_t 
 
 /// The first R registers of a row.
 template <int R>
-inline void multiply(double* y, const double* a, const double* x, std::ptrdiff_t apart, int terms)
+inline void multiply(double* y, const Terms& of, const double* x)
 {
     Held sums[R]{};
-    for (int k = 0; k < terms; ++k, a += apart, x += apart) {
+    const double* a = of.a;
+    for (int k = 0; k < of.n; ++k, a += of.a_apart, x += of.apart) {
         const double s = *a;
         for (int r = 0; r < R; ++r) sums[r] += s * at(x + r * held);
     }
     for (int r = 0; r < R; ++r) put(y + r * held, sums[r]);
 }
 
-void product(double* y, const double* a, const double* x, std::ptrdiff_t apart, int terms, int n)
+void product(double* y, const Terms& of, int n)
 {
     constexpr int most = 12;   // registers: some are left for a factor
     constexpr decltype(&multiply<1>) by_number[most + 1] = {
         nullptr,     multiply<1>, multiply<2>, multiply<3>,  multiply<4>,  multiply<5>, multiply<6>,
         multiply<7>, multiply<8>, multiply<9>, multiply<10>, multiply<11>, multiply<12>};
+    const double* x = of.x;
     for (int left = (n + held - 1) / held; left > 0; left -= most) {
-        by_number[left < most ? left : most](y, a, x, apart, terms);
+        by_number[left < most ? left : most](y, of, x);
         y += most * held;
         x += most * held;
     }
+}
+
+double sum_of(Held v)
+{
+    double sum = 0;
+    for (int k = 0; k < held; ++k) sum += v[k];
+    return sum;
+}
+
+inline void reflect_by(const Reflection& one, double* x, const double* v, int n)
+{
+    if (one.beta == 0) return;
+    Held sums{};
+    for (int k = 0; k < n; k += held) sums += at(v + k) * at(x + 1 + k);
+    const double t = one.beta * (*x + sum_of(sums));
+    if (t == 0) return;   // what is zero stays so, in its sign
+    *x -= t;
+    for (int k = 0; k < n; k += held) put(x + 1 + k, at(x + 1 + k) - t * at(v + k));
+}
+
+inline void exchange(double* x, int i, int j)
+{
+    const double kept = x[i];
+    x[i] = x[j];
+    x[j] = kept;
 }
 
 void reflect_all(double* x, const double* columns, std::ptrdiff_t apart, const Reflection* reflections,
                  int first, int last)
 {
     for (int i = first; i < last; ++i) {
-        const Reflection& one = reflections[i];
-        const double head = x[one.lead];
-        x[one.lead] = x[i];
-        x[i] = head;
-        if (one.beta == 0) continue;
-        const double* v = columns + i * apart + i + 1;
-        double* y = x + i + 1;
-        const int n = one.end - i - 1;
-        Held sums{};
-        for (int k = 0; k < n; k += held) sums += at(v + k) * at(y + k);
-        double t = head;
-        for (int k = 0; k < held; ++k) t += sums[k];
-        t *= one.beta;
-        if (t == 0) continue;   // what is zero stays so, in its sign
-        x[i] = head - t;
-        for (int k = 0; k < n; k += held) put(y + k, at(y + k) - t * at(v + k));
+        exchange(x, i, reflections[i].lead);
+        reflect_by(reflections[i], x + i, columns + i * apart + i + 1, reflections[i].end - i - 1);
     }
+}
+
+void reflect_back(double* x, const double* columns, std::ptrdiff_t apart, const Reflection* reflections, int n)
+{
+    for (int i = n - 1; i >= 0; --i) {
+        reflect_by(reflections[i], x + i, columns + i * apart + i + 1, reflections[i].end - i - 1);
+        exchange(x, i, reflections[i].lead);
+    }
+}
+
+void make_reflection(double* x, int n, Reflection* made, bool keep_sign)
+{
+    double* const v = x + 1;
+    const double head = *x;
+    Held sums{};
+    for (int k = 0; k < n; k += held) sums += at(v + k) * at(v + k);
+    const double length = __builtin_sqrt(head * head + sum_of(sums));
+    // the kept sign would cancel where head has come close to it
+    if (!keep_sign || made->sign * head > 0.99 * length) made->sign = head > 0 ? -1 : 1;
+    made->beta = 0;
+    if (length == 0) return;
+    const double r = made->sign * length, v0 = head - r, scale = 1 / v0;
+    made->beta = -v0 / r;
+    *x = r;
+    for (int k = 0; k < n; k += held) put(v + k, scale * at(v + k));
 }
 
 typedef double HeldTwo __attribute__((vector_size(16)));
@@ -191,7 +229,7 @@ double largest(const double* x, int n)
 }
 
 constexpr RowFunctions in_registers{inner,          subtract_scaled, reflect, subtract_pair,
-                                    subtract_fours, product,         reflect_all, reflect_rows, largest};
+                                    subtract_fours, product,         reflect_all, reflect_back,    make_reflection, reflect_rows, largest};
 
 }   // namespace
 }   // namespace livens::inline solvers_internal

@@ -13,7 +13,6 @@
 #include "livens/solvers/dense.h"
 #include "livens/solvers/patience.h"
 #include "livens/solvers/short_rows.h"
-#include "livens/spacetime/elements/kernel_functions.h"
 #include "livens/spacetime/nodal/carried.h"
 #include "livens/spacetime/nodal/mass_products.h"
 #include "livens/spacetime/nodal/nodes.h"
@@ -69,6 +68,7 @@ private:
     MassProducts masses_;
     int e_ = 0, A_ = 0, B_ = 1;     // the open pair
     std::vector<double> product_;   // block of the tangent times the null space at B, n x f
+    std::vector<double> row_;       // of Z_A^T times it
 };
 
 class NullSpaces final : public Elimination {
@@ -193,7 +193,8 @@ void put_scaled(double* __restrict to, std::ptrdiff_t apart, double s, const dou
 
 Pairs::Pairs(NullSpaces& all, int degree)
     : all_(all), masses_(all.tables_, degree + 1),
-      product_(static_cast<std::size_t>(all.tables_.n_twists * all.f_), 0.0)
+      product_(static_cast<std::size_t>(all.tables_.n_twists * all.f_ + register_room), 0.0),
+      row_(static_cast<std::size_t>(all.f_ + register_room), 0.0)
 {}
 
 /// Sets the blocks of all pairs: the product of (A, B) is the transpose of that of (B, A).
@@ -249,9 +250,13 @@ void Pairs::close()
     const int f = all_.f_;
     if (f == 0) return;
     if (f >= 64) Patience::ask();
-    lanes::functions(4)->blocks->add_from_left(
-        all_.z_.data() + all_.place(A_), {all_.tables_.n_twists, f, 1}, product_.data(), f,
-        all_.matrix_.block(e_, place_of_row(*all_.layout_, A_), B_), all_.matrix_.stride(e_));
+    const RowFunctions& rows = row_functions();
+    const double* z = all_.z_.data() + all_.place(A_);
+    double* to = all_.matrix_.block(e_, place_of_row(*all_.layout_, A_), B_);
+    for (int i = 0; i < f; ++i, to += all_.matrix_.stride(e_)) {
+        rows.product(row_.data(), {z + i, f, product_.data(), f, all_.tables_.n_twists}, f);
+        subtract_scaled(to, -1, row_.data(), f);
+    }
 }
 
 /// P(0) is added at the first node, P(T) taken off at the last.

@@ -94,8 +94,8 @@ void MassProducts::multiply(int a)
     const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(a) * f_;
     const int n = (n_nodes_ - a) * f_;
     for (int i = 0; i < f_; ++i)
-        rows.product(product_.data() + i * stride_, rates_.data() + from + i, weighed_.data() + from, stride_,
-                     n_rows_, n);
+        rows.product(product_.data() + i * stride_,
+                     {rates_.data() + from + i, stride_, weighed_.data() + from, stride_, n_rows_}, n);
 }
 
 }   // namespace livens::inline spacetime_internal
