@@ -1835,11 +1835,11 @@ livens_mutant(NAME exchanges_left_out
               TESTS_OF unit_solvers
               MUST_FAIL OrthogonalBasis.LeavesOutNothingButZeros)
 
-# A block of two nodes taken as it stands, not transposed: right for one freedom.
-livens_mutant(NAME blocks_not_transposed
-              FILE spacetime/nodal/elimination.cpp
-              OLD [[if (b > a) set(b, a, product, true);]]
-              NEW [[if (b > a) set(b, a, product, false);]]
+# Blocks of (B, A) have the columns of the next freedom: right for one.
+livens_mutant(NAME columns_of_the_next_freedom
+              FILE spacetime/nodal/mass_products.cpp
+              OLD [[double* __restrict number = to.at + i;]]
+              NEW [[double* __restrict number = to.at + (i + 1) % f_;]]
               TESTS_OF unit_spacetime
               MUST_FAIL Lobatto/TangentOf.IsThatOfTheBlocksThatAreSolved/2)
 

@@ -122,10 +122,17 @@ bool Panel::eliminate_block(int first, int end)
     for (int k = first; k < end; ++k) {
         if (!choose_pivot(k, best)) return false;
         switch (end - k) {
-        case 4: best = eliminate_column<3>(k); break;
-        case 3: best = eliminate_column<2>(k); break;
-        case 2: best = eliminate_column<1>(k); break;
-        default: eliminate_column<0>(k);
+        case 4:
+            best = eliminate_column<3>(k);
+            break;
+        case 3:
+            best = eliminate_column<2>(k);
+            break;
+        case 2:
+            best = eliminate_column<1>(k);
+            break;
+        default:
+            eliminate_column<0>(k);
         }
     }
     return true;

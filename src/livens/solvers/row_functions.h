@@ -33,21 +33,21 @@ struct RowFunctions {
     /// far apart each
     void (*subtract_fours)(double* y, const double* a, const double* x, std::ptrdiff_t apart, int rows,
                            int n);
-    /// y = sum_k a_k x_k of rows x_k of n numbers. Where n is no multiple of a register, there is register_room
-    /// behind rows, of which anything is read and written.
+    /// y = sum_k a_k x_k of rows x_k of n numbers. Where n is no multiple of a register, there is
+    /// register_room behind rows, of which anything is read and written.
     void (*product)(double* y, const Terms& of, int n);
-    /// x <- reflections first..last - 1 of an OrthogonalBasis of it, each after its exchange; their columns so far
-    /// apart, and register_room of zeros behind each and behind x.
+    /// x <- reflections first..last - 1 of an OrthogonalBasis of it, each after its exchange; their columns
+    /// so far apart, and register_room of zeros behind each and behind x.
     void (*reflect_all)(double* x, const double* columns, std::ptrdiff_t apart, const Reflection* reflections,
                         int first, int last);
     /// x <- reflections n - 1..0 of it, each before its exchange.
     void (*reflect_back)(double* x, const double* columns, std::ptrdiff_t apart,
                          const Reflection* reflections, int n);
-    /// Sign and beta of the reflection that leaves the head of x, which becomes its v behind the head; n numbers
-    /// and register_room of zeros behind it. A sign that is kept must not cancel.
+    /// Sign and beta of the reflection that leaves the head of x, which becomes its v behind the head; n
+    /// numbers and register_room of zeros behind it. A sign that is kept must not cancel.
     void (*make_reflection)(double* x, int n, Reflection* made, bool keep_sign);
-    /// Rows 1..rows of z, n numbers each, by the reflection 1 - beta [1; v] [1; v]^T with row 0, which is zero
-    /// before.
+    /// Rows 1..rows of z, n numbers each, by the reflection 1 - beta [1; v] [1; v]^T with row 0, which is
+    /// zero before.
     void (*reflect_rows)(double* z, int n, double beta, const double* v, int rows);
     /// the largest |x_i|; infinite where one is not finite
     double (*largest)(const double* x, int n);

@@ -202,8 +202,8 @@ TEST_P(TangentOf, MatchesDifferencesWithEveryKindOfTerm)
 
 TEST_P(TangentOf, MatchesDifferencesWithoutLoads) { expect_differences(two_bricks(), GetParam(), 0.3); }
 
-/// Twists that are solved for meet the rows in the tangent that differences have, of which masses of all pairs
-/// are formed together in the solver's blocks.
+/// Twists that are solved for meet the rows in the tangent that differences have, of which masses of all
+/// pairs are formed together in the solver's blocks.
 void expect_solutions(const Model& model, const Case& c)
 {
     Window window(model, c, 0.3);
@@ -231,7 +231,8 @@ void expect_solutions(const Model& model, const Case& c)
                 largest = std::max(largest, std::abs(twists[j]));
             }
         nodes.basis(A).q.apply_transposed(y.data());
-        for (int i = 0; i < f; ++i) worst = std::max(worst, std::abs(y[k + i] - rows[dense.rows[A] / n * f + i]));
+        for (int i = 0; i < f; ++i)
+            worst = std::max(worst, std::abs(y[k + i] - rows[dense.rows[A] / n * f + i]));
     }
     EXPECT_LT(worst, 1e-11 * largest);
 }

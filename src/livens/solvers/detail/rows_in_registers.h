@@ -150,7 +150,8 @@ void reflect_all(double* x, const double* columns, std::ptrdiff_t apart, const R
     }
 }
 
-void reflect_back(double* x, const double* columns, std::ptrdiff_t apart, const Reflection* reflections, int n)
+void reflect_back(double* x, const double* columns, std::ptrdiff_t apart, const Reflection* reflections,
+                  int n)
 {
     for (int i = n - 1; i >= 0; --i) {
         reflect_by(reflections[i], x + i, columns + i * apart + i + 1, reflections[i].end - i - 1);
@@ -228,8 +229,9 @@ double largest(const double* x, int n)
     return left == 0 ? found : __builtin_inf();
 }
 
-constexpr RowFunctions in_registers{inner,          subtract_scaled, reflect, subtract_pair,
-                                    subtract_fours, product,         reflect_all, reflect_back,    make_reflection, reflect_rows, largest};
+constexpr RowFunctions in_registers{inner,           subtract_scaled, reflect,     subtract_pair,
+                                    subtract_fours,  product,         reflect_all, reflect_back,
+                                    make_reflection, reflect_rows,    largest};
 
 }   // namespace
 }   // namespace livens::inline solvers_internal

@@ -169,62 +169,43 @@ private:
     std::vector<double> maps_;   // of the nodes where the tangent was formed; empty: bases may turn
 };
 
-/// to <- s from, in pairs: rows are short.
-void put_scaled(double* __restrict to, double s, const double* __restrict from, int n)
-{
-    int j = 0;
-    for (; j + 1 < n; j += 2) {
-        to[j] = s * from[j];
-        to[j + 1] = s * from[j + 1];
-    }
-    if (j < n) to[j] = s * from[j];
-}
-
-/// The same into a column, its numbers so far apart.
-void put_scaled(double* __restrict to, std::ptrdiff_t apart, double s, const double* __restrict from, int n)
-{
-    int j = 0;
-    for (; j + 1 < n; j += 2, to += 2 * apart) {
-        to[0] = s * from[j];
-        to[apart] = s * from[j + 1];
-    }
-    if (j < n) to[0] = s * from[j];
-}
-
 Pairs::Pairs(NullSpaces& all, int degree)
     : all_(all), masses_(all.tables_, degree + 1),
       product_(static_cast<std::size_t>(all.tables_.n_twists * all.f_ + register_room), 0.0),
       row_(static_cast<std::size_t>(all.f_ + register_room), 0.0)
 {}
 
-/// Sets the blocks of all pairs: the product of (A, B) is the transpose of that of (B, A).
+/// Sets the blocks of all pairs: the product of (A, B) is the transpose of that of (B, A). All nodes but the
+/// ends of a window have rows and unknowns.
 bool Pairs::take_masses(int e, const std::vector<double>& k, double h)
 {
     const WindowLayout& layout = *all_.layout_;
     const int f = all_.f_, p = layout.degree, first = e * p;
     if (f == 0) return true;   // there is no matrix
-    const std::ptrdiff_t apart = masses_.stride(), stride = all_.matrix_.stride(e);
-    const auto set = [&](int a, int b, const double* product, bool is_transposed) {
-        const int A = first + a, B = first + b;
-        if (!layout.is_active(A) || !layout.is_unknown(B)) return;
-        const double factor = k[a * (p + 1) + b] / h;
-        double* to = all_.matrix_.block(e, place_of_row(layout, A), B);
-        for (int i = 0; i < f; ++i)
-            if (is_transposed)
-                put_scaled(to + i, stride, factor, product + i * apart, f);
-            else
-                put_scaled(to + i * stride, factor, product + i * apart, f);
+    const int stride = all_.matrix_.stride(e);
+    const auto at = [&](int a, int b) {
+        return all_.matrix_.block(e, place_of_row(layout, first + a), first + b);
     };
-    for (int a = 0; a <= p; ++a)
-        masses_.place(a, all_.nodes_->X(first + a), all_.nodes_->maps(first + a),
-                      all_.z_.data() + all_.place(first + a));
-    for (int a = 0; a <= p; ++a) {
-        if (f >= 64) Patience::ask();
-        masses_.multiply(a);
-        for (int b = a; b <= p; ++b) {
-            const double* product = masses_.product() + (b - a) * f;
-            set(a, b, product, false);
-            if (b > a) set(b, a, product, true);
+    std::vector<double> by_row(static_cast<std::size_t>(p + 1)), by_column(by_row);
+    for (int part = 0; part < masses_.n_parts(); ++part) {
+        for (int a = 0; a <= p; ++a)
+            masses_.place(part, a, all_.nodes_->X(first + a), all_.nodes_->maps(first + a),
+                          all_.z_.data() + all_.place(first + a));
+        for (int a = 0; a <= p; ++a) {
+            if (f >= 64) Patience::ask();
+            masses_.multiply(a);
+            for (int b = 0; b <= p; ++b) {
+                by_row[b] = k[a * (p + 1) + b] / h;
+                by_column[b] = k[b * (p + 1) + a] / h;
+            }
+            int begin = layout.is_unknown(first + a) ? a : a + 1,
+                end = layout.is_unknown(first + p) ? p : p - 1;
+            if (layout.is_active(first + a) && begin <= end)
+                masses_.put_rows({at(a, begin), stride, begin, end}, a, by_row.data(), part > 0);
+            begin = a + 1;
+            end = layout.is_active(first + p) ? p : p - 1;
+            if (layout.is_unknown(first + a) && begin <= end)
+                masses_.put_columns({at(begin, a), stride, begin, end}, a, by_column.data(), part > 0);
         }
     }
     return true;

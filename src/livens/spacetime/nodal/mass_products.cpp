@@ -32,32 +32,33 @@ inline void combine(double* __restrict y, const double (&s)[terms], const double
 }   // namespace
 
 MassProducts::MassProducts(const ModelTables& tables, int n_nodes)
-    : tables_(tables), f_(tables.freedoms()), n_nodes_(n_nodes)
+    : tables_(tables), f_(tables.freedoms()), n_nodes_(n_nodes),
+      stride_(static_cast<std::ptrdiff_t>(n_nodes) * f_ + register_room)
 {
-    for (const BodyTable& body : tables.bodies) n_rows_ += body.dofs == 6 ? 12 : 3;
-    stride_ = static_cast<std::ptrdiff_t>(n_nodes) * f_ + register_room;
-    rates_.assign(static_cast<std::size_t>(n_rows_ * stride_), 0.0);
+    rates_.assign(static_cast<std::size_t>(12 * std::min(most_bodies, tables.n_bodies()) * stride_), 0.0);
     weighed_ = rates_;
     product_.assign(static_cast<std::size_t>(f_ * stride_), 0.0);
+    factors_.assign(static_cast<std::size_t>(stride_), 0.0);
 }
 
-void MassProducts::place(int a, const double* X, const double* maps, const double* Z)
+void MassProducts::place(int part, int a, const double* X, const double* maps, const double* Z)
 {
-    int first = 0;
-    for (int b = 0; b < tables_.n_bodies(); ++b) {
+    n_rows_ = 0;
+    const int end = std::min((part + 1) * most_bodies, tables_.n_bodies());
+    for (int b = part * most_bodies; b < end; ++b) {
         const BodyTable& body = tables_.bodies[b];
-        place_body(b, first, static_cast<std::ptrdiff_t>(a) * f_, maps + 12 * b, X + 12 * b, Z + body.first * f_);
-        first += body.dofs == 6 ? 12 : 3;
+        place_body(b, n_rows_, a, {X + 12 * b, maps + 12 * b, Z + body.first * f_});
+        n_rows_ += body.dofs == 6 ? 12 : 3;
     }
 }
 
-void MassProducts::place_body(int b, int first, std::ptrdiff_t column, const double* maps, const double* X,
-                              const double* __restrict z)
+void MassProducts::place_body(int b, int row, int node, const Placed& at)
 {
     const BodyTable& body = tables_.bodies[b];
+    const auto& [X, maps, z] = at;
     const int f = f_;
-    double *rates = rates_.data() + first * stride_ + column,
-           *weighed = weighed_.data() + first * stride_ + column;
+    const std::ptrdiff_t place = row * stride_ + static_cast<std::ptrdiff_t>(node) * f;
+    double *rates = rates_.data() + place, *weighed = weighed_.data() + place;
     for (int i = 0; i < 3; ++i) {
         std::copy_n(z + i * f, f, rates + i * stride_);
         std::copy_n(z + i * f, f, weighed + i * stride_);
@@ -96,6 +97,37 @@ void MassProducts::multiply(int a)
     for (int i = 0; i < f_; ++i)
         rows.product(product_.data() + i * stride_,
                      {rates_.data() + from + i, stride_, weighed_.data() + from, stride_, n_rows_}, n);
+}
+
+void MassProducts::spread(const Block& to, const double* factors)
+{
+    double* each = factors_.data();
+    for (int b = to.first; b <= to.last; ++b)
+        for (int j = 0; j < f_; ++j) *each++ = factors[b];
+}
+
+void MassProducts::put_rows(const Block& to, int a, const double* factors, bool adds)
+{
+    spread(to, factors);
+    const int n = (to.last - to.first + 1) * f_;
+    for (int i = 0; i < f_; ++i) {
+        const double *from = product_.data() + i * stride_ + (to.first - a) * f_, *each = factors_.data();
+        double* __restrict row = to.at + i * to.apart;
+        for (int c = 0; c < n && adds; ++c) row[c] += each[c] * from[c];
+        for (int c = 0; c < n && !adds; ++c) row[c] = each[c] * from[c];
+    }
+}
+
+void MassProducts::put_columns(const Block& to, int a, const double* factors, bool adds)
+{
+    spread(to, factors);
+    const int n = (to.last - to.first + 1) * f_;
+    for (int i = 0; i < f_; ++i) {
+        const double *from = product_.data() + i * stride_ + (to.first - a) * f_, *each = factors_.data();
+        double* __restrict number = to.at + i;
+        for (int c = 0; c < n && adds; ++c, number += to.apart) *number += each[c] * from[c];
+        for (int c = 0; c < n && !adds; ++c, number += to.apart) *number = each[c] * from[c];
+    }
 }
 
 }   // namespace livens::inline spacetime_internal
