@@ -47,17 +47,17 @@ void MassProducts::place(int part, int a, const double* X, const double* maps, c
     const int end = std::min((part + 1) * most_bodies, tables_.n_bodies());
     for (int b = part * most_bodies; b < end; ++b) {
         const BodyTable& body = tables_.bodies[b];
-        place_body(b, n_rows_, a, {X + 12 * b, maps + 12 * b, Z + body.first * f_});
+        place_body(b, n_rows_ * stride_ + static_cast<std::ptrdiff_t>(a) * f_, X + 12 * b, maps + 12 * b,
+                   Z + body.first * f_);
         n_rows_ += body.dofs == 6 ? 12 : 3;
     }
 }
 
-void MassProducts::place_body(int b, int row, int node, const Placed& at)
+void MassProducts::place_body(int b, std::ptrdiff_t place, const double* X, const double* maps,
+                              const double* z)
 {
     const BodyTable& body = tables_.bodies[b];
-    const auto& [X, maps, z] = at;
     const int f = f_;
-    const std::ptrdiff_t place = row * stride_ + static_cast<std::ptrdiff_t>(node) * f;
     double *rates = rates_.data() + place, *weighed = weighed_.data() + place;
     for (int i = 0; i < 3; ++i) {
         std::copy_n(z + i * f, f, rates + i * stride_);

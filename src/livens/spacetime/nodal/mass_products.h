@@ -13,10 +13,6 @@ namespace livens::inline spacetime_internal {
 /// product of N D Z at all nodes with itself, mass between, whose rows are long. Bodies come in parts, which
 /// add up: else many of them would take more room than the element's matrix.
 class MassProducts {
-    struct Placed {
-        const double *X, *maps, *Z;
-    };
-
 public:
     MassProducts(const ModelTables& tables, int n_nodes);
 
@@ -45,8 +41,8 @@ private:
     static constexpr int most_bodies = 8;
 
     void spread(const Block& to, const double* factors);
-    /// `row`: the first of the body's.
-    void place_body(int body, int row, int a, const Placed& at);
+    /// `place`: of the body's first row, at a node.
+    void place_body(int body, std::ptrdiff_t place, const double* X, const double* maps, const double* z);
 
     const ModelTables& tables_;
     int f_, n_nodes_, n_rows_ = 0;
