@@ -8,7 +8,8 @@ Each motion is marched first, from 0.5 s on. Then places (x) or momenta (p) at i
 program gives it with exit 0, and a march from the start that it has arrives where it does: within 1e-9 lengths and what both say
 of their errors, times what a small change of the start grows by. Several motions may meet the same conditions. Two counts stand beside:
 those found by plain guesses (marches from either end, with the rates of the other end, too), without those that ends which are led or
-other rates found; and the control, what Newton's iteration finds from its first guess alone. Exit status 1 if fewer than --least count,
+other rates found; and the control, what Newton's iteration finds from its first guess alone, which where no rates are stated at the
+known places is the nearer of a march from rest and one with the rates of the other end. Exit status 1 if fewer than --least count,
 or fewer than --control more than the control has.
 """
 import argparse
@@ -163,7 +164,7 @@ def main():
         for one in asked:
             label, status, confirmed, told, is_first = one.result()
             tried, counted, plain = tried + 1, counted + confirmed, plain + (confirmed and not told)
-            first += confirmed and is_first
+            first += confirmed and is_first and not told   # a guess that cannot be begun with is no run
             by = told or ("" if not confirmed or is_first else "found by another plain guess than the first")
             print(f"{label:45s} {'yes' if confirmed else 'no '} {status:3d} {by}", flush=True)
     print(f"{counted} of {tried}, {plain} of them by plain guesses, {first} by the first guess alone")
