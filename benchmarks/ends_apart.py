@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How far apart the ends of time may be: motions of seven mechanisms, from what is known of them at two instants.
 
-    benchmarks/ends_apart.py build/release/livens [--guess 0.9] [--ends xx xp px] [--mechanism NAME ..] [--limit 300] [--jobs 2]
+    benchmarks/ends_apart.py build/release/livens [--guess 0.9] [--ends xx xp px] [--mechanism NAME ..] [--limit 300] [--jobs 2] [--least N] [--control N]
 
 Each motion is marched first, from 0.5 s on. Then places (x) or momenta (p) at its two ends are all that is known, over 0.25 to
 4 s, beside rates times `--guess` at the start and none at the end: lobatto(8), 20 elements a second. A motion counts if the
 program gives it with exit 0, and a march from the start that it has arrives where it does: within 1e-9 lengths and what both say
-of their errors, times what a small change of the start grows by. Several motions may meet the same conditions. Counts without those that the program found
-by ends that are led or by other rates stand beside: what plain guesses reach. Exit status 1 if fewer than --least count.
+of their errors, times what a small change of the start grows by. Several motions may meet the same conditions. Two counts stand beside:
+those found by plain guesses (marches from either end, with the rates of the other end, too), without those that ends which are led or
+other rates found; and the control, what Newton's iteration finds from its first guess alone, which where no rates are stated at the
+known places is the nearer of a march from rest and one with the rates of the other end. Exit status 1 if fewer than --least count,
+or fewer than --control more than the control has.
 """
 import argparse
 import concurrent.futures
@@ -128,12 +131,12 @@ def is_confirmed(runs, name, tree, run, summary):
 
 
 def case(runs, name, tree, forward, ends, duration, guess):
-    """Status, whether a march confirms it, and the note on an end that was led."""
+    """Status, whether a march confirms it, the note on how it was found, and whether that was by the first guess."""
     asked = between(tree, runs.state(forward, tree, BEGIN), runs.state(forward, tree, BEGIN + duration), duration, ends, guess)
     label = f"{name}_{ends}_{guess}_{duration}"
     status, summary, run = runs.solve(label, asked)
-    led = next((note for note in summary.get("notes", []) if note.startswith("found ")), "")
-    return label, status, status == 0 and is_confirmed(runs, label, asked, run, summary), led
+    told = next((note for note in summary.get("notes", []) if note.startswith("found ")), "")
+    return label, status, status == 0 and is_confirmed(runs, label, asked, run, summary), told, summary.get("rescued") == 0
 
 
 def main():
@@ -145,8 +148,9 @@ def main():
     parser.add_argument("--limit", type=float, default=300, help="s of one run")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--least", type=int, default=0)
+    parser.add_argument("--control", type=int, default=0)
     options = parser.parse_args()
-    counted = plain = tried = 0
+    counted = plain = first = tried = 0
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         runs, asked = Runs(options.program, folder, options.limit), []
         for name in options.mechanism:
@@ -158,11 +162,13 @@ def main():
             tree.pop("start", None)
             asked += [pool.submit(case, runs, name, tree, run, ends, T, options.guess) for ends in options.ends for T in DURATIONS]
         for one in asked:
-            label, status, confirmed, led = one.result()
-            tried, counted, plain = tried + 1, counted + confirmed, plain + (confirmed and not led)
-            print(f"{label:45s} {'yes' if confirmed else 'no '} {status:3d} {led}", flush=True)
-    print(f"{counted} of {tried}, {plain} of them by plain guesses")
-    return counted < options.least
+            label, status, confirmed, told, is_first = one.result()
+            tried, counted, plain = tried + 1, counted + confirmed, plain + (confirmed and not told)
+            first += confirmed and is_first and not told   # a guess that cannot be begun with is no run
+            by = told or ("" if not confirmed or is_first else "found by another plain guess than the first")
+            print(f"{label:45s} {'yes' if confirmed else 'no '} {status:3d} {by}", flush=True)
+    print(f"{counted} of {tried}, {plain} of them by plain guesses, {first} by the first guess alone")
+    return counted < options.least or counted < first + options.control
 
 
 if __name__ == "__main__":

@@ -1852,21 +1852,21 @@ livens_mutant(NAME exchanges_left_out
               TESTS_OF unit_solvers
               MUST_FAIL OrthogonalBasis.LeavesOutNothingButZeros)
 
-# A block of two nodes taken as it stands, not transposed: right for one freedom.
-livens_mutant(NAME blocks_not_transposed
-              FILE spacetime/nodal/elimination.cpp
-              OLD [[to[i * stride + j] = from[j * stride + i];]]
-              NEW [[to[i * stride + j] = from[i * stride + j];]]
-              TESTS_OF convergence
-              MUST_FAIL LobattoEnds.EveryRateNearbyFindsTheMotion)
-
-# Halves of tangents under loads, too, whose other halves differ.
-livens_mutant(NAME halves_under_loads
-              FILE spacetime/nodal/tangent.cpp
-              OLD [[tables_.loads.with_tangent.empty() && rule_.points == Points::lobatto;]]
-              NEW [[rule_.points == Points::lobatto;]]
+# Blocks of (B, A) have the columns of the next freedom: right for one.
+livens_mutant(NAME columns_of_the_next_freedom
+              FILE spacetime/nodal/mass_products.cpp
+              OLD [[double* __restrict number = to.at + i;]]
+              NEW [[double* __restrict number = to.at + (i + 1) % f_;]]
               TESTS_OF unit_spacetime
-              MUST_FAIL Lobatto/TangentOf.MatchesDifferencesWithEveryKindOfTerm/2)
+              MUST_FAIL Lobatto/TangentOf.IsThatOfTheBlocksThatAreSolved/2)
+
+# Products of mass of a body with skew axes as if these were its own.
+livens_mutant(NAME skew_mass_as_straight
+              FILE spacetime/nodal/mass_products.cpp
+              OLD [[if (body.principal)]]
+              NEW [[if (f > 0)]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL MassProducts.AreThoseOfTheMassBetweenNodes)
 
 # What joints make of two bodies passed on before the last row of the last joint.
 livens_mutant(NAME last_crossing_forgotten

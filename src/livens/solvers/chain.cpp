@@ -19,6 +19,7 @@
 
 #include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
+#include "livens/solvers/row_functions.h"
 
 namespace livens::inline solvers_internal {
 
@@ -104,7 +105,6 @@ void ChainSolver::fill_inside(int e)
     const int stride = matrix_.stride(e), n_rows = link.inside.n_rows(),
               passed = link.n_near + link.n_far + border();
     const double near_scale = e == 0 ? 1 : links_[static_cast<std::size_t>(e) - 1].scale;
-    link.inside.clear();
     for (int i = 0; i < n_rows; ++i) {
         const bool is_near = i < link.r_near, is_far = i >= link.r_near + link.r_own;
         double* to = link.inside.row(is_near ? link.r_own + i : is_far ? i : i - link.r_near);
@@ -115,6 +115,7 @@ void ChainSolver::fill_inside(int e)
         std::copy_n(from + link.n_near + link.n_own, link.n_far, others + link.n_near);
         std::copy_n(seen.data() + static_cast<std::ptrdiff_t>(i) * border(), border(),
                     others + link.n_near + link.n_far);
+        std::fill_n(others + passed, link.p_near + link.p_far, 0.0);
         if (is_near) others[passed + i] = near_scale;
         if (is_far && link.p_far > 0)
             others[passed + link.p_near + i - link.r_near - link.r_own] = -link.scale;
@@ -173,7 +174,8 @@ bool ChainSolver::condense(Link& link, int e)
     if (link.inside.n_left() < 0) return false;
     // while pivots are its own rows', nothing that passes is touched
     const int plain = link.n_own + link.n_near + link.n_far + border();
-    const double size = link.inside.largest();
+    const double passed = e > 0 && link.p_near > 0 ? links_[static_cast<std::size_t>(e) - 1].scale : 0;
+    const double size = std::max(link.size, passed);
     bool is_done = link.inside.eliminate(link.r_own, plain);
     if (is_done && link.inside.largest_left() > most_growth * size) {
         fill_inside(e);
@@ -219,18 +221,19 @@ Outcome ChainSolver::factorise(BlockMatrix& matrix)
 
 Outcome ChainSolver::condense_all()
 {
-    const auto is_finite = [](const Values& values) {
-        return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+    const RowFunctions& functions = row_functions();
+    const auto largest = [&functions](const Values& values) {
+        return functions.largest(values.data(), static_cast<int>(values.size()));
     };
     std::vector<char> is_good(links_.size());
     for_each_item(n_links(), least_shared_links, [&](int e) {
-        is_good[e] = is_finite(matrix_.storage(e)) && is_finite(matrix_.border_storage(e));
-        double size = 0;
-        for (const double v : matrix_.storage(e)) size = std::max(size, std::abs(v));
+        const double size = largest(matrix_.storage(e)), seen = largest(matrix_.border_storage(e));
+        is_good[e] = std::isfinite(size) && std::isfinite(seen);
         links_[e].scale = size > 0 ? size : 1;
+        links_[e].size = std::max(links_[e].scale, seen);
     });
     const auto are_all_good = [&] { return std::ranges::all_of(is_good, [](char is) { return is != 0; }); };
-    if (!is_finite(matrix_.closing()) || !are_all_good()) return Outcome::not_finite;
+    if (!std::isfinite(largest(matrix_.closing())) || !are_all_good()) return Outcome::not_finite;
     for_each_item(n_links(), least_shared_links, [&](int e) {
         Patience::ask();
         is_good[e] = condense(links_[e], e);

@@ -44,7 +44,7 @@ void ChainSolver::solve_closing(std::span<const double> rows, std::span<double> 
     work_.front.assign(ends.size() - rows.size(), 0.0);
     work_.front.insert(work_.front.end(), rows.begin(), rows.end());
     closing_.apply(work_.front.data());
-    closing_.solve(work_.front.data(), nullptr);
+    closing_.solve(work_.front.data());
     std::copy(work_.front.begin(), work_.front.end(), ends.begin());
 }
 
@@ -123,7 +123,7 @@ void ChainSolver::apply_inverse(double* x) const
         work_.front.swap(work_.others);
     } else {
         closing_.apply(work_.front.data());
-        closing_.solve(work_.front.data(), nullptr);
+        closing_.solve(work_.front.data());
     }
     substitute_back(x);
     substitute_inside(x);
@@ -143,11 +143,13 @@ void ChainSolver::substitute_back(double* x) const
         const Link& link = links_[static_cast<std::size_t>(e)];
         const double* of_far = x + unknown(link.last);
         Values& merged = link.merged_values;
-        work_.others.assign(carried, carried + n_carried_);
+        work_.others.assign(merged.begin(), merged.end());
+        work_.others.insert(work_.others.end(), carried, carried + n_carried_);
         work_.others.insert(work_.others.end(), of_far, of_far + link.n_far);
         work_.others.insert(work_.others.end(), of_border, of_border + b);
         work_.others.insert(work_.others.end(), work_.passed.begin(), work_.passed.end());
-        link.merged.solve(merged.data(), work_.others.data());
+        link.merged.solve(work_.others.data());
+        std::copy_n(work_.others.begin(), merged.size(), merged.begin());
         std::copy_n(merged.begin() + link.p_near, link.n_near, x + unknown(link.first));
         work_.passed.assign(merged.begin(), merged.begin() + link.p_near);
     }
@@ -158,21 +160,21 @@ void ChainSolver::substitute_inside(double* x) const
 {
     const double* of_border = x + first_unknown_.back();
     in_shares(n_links(), least_shared_links, [&](int, int begin, int end) {
-        Values others;
+        Values all;
         for (int e = begin; e < end; ++e) {
             const Link& link = links_[static_cast<std::size_t>(e)];
             const double *of_near = x + unknown(link.first), *of_far = x + unknown(link.last);
             const auto passes = [&](const Values& merged, int n) {
-                others.insert(others.end(), merged.begin(), merged.begin() + n);
+                all.insert(all.end(), merged.begin(), merged.begin() + n);
             };
-            others.assign(of_near, of_near + link.n_near);
-            others.insert(others.end(), of_far, of_far + link.n_far);
-            others.insert(others.end(), of_border, of_border + border());
+            all = link.inside_values;
+            all.insert(all.end(), of_near, of_near + link.n_near);
+            all.insert(all.end(), of_far, of_far + link.n_far);
+            all.insert(all.end(), of_border, of_border + border());
             passes(link.merged_values, link.p_near);
             if (link.p_far > 0) passes(links_[static_cast<std::size_t>(e) + 1].merged_values, link.p_far);
-            link.inside.solve(link.inside_values.data(), others.data());
-            std::copy(link.inside_values.begin(), link.inside_values.end(),
-                      x + unknown(link.first) + link.n_near);
+            link.inside.solve(all.data());
+            std::copy_n(all.begin(), link.n_own, x + unknown(link.first) + link.n_near);
         }
     });
 }

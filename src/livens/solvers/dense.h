@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -77,7 +78,7 @@ public:
     int n() const { return n_; }
     int rank() const { return k_; }
     /// Column j is filled in by the caller before factorise(); overwritten by it.
-    double* column(int j) { return g_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(n_); }
+    double* column(int j) { return g_.data() + j * stride_; }
 
     /// Entries of column j that may not be zero, first..end - 1: else it is looked through by factorise().
     void reach_of(int j, int first, int end) { ranges_[static_cast<std::size_t>(j)] = {first, end}; }
@@ -100,18 +101,17 @@ public:
 private:
     void lead(int j, bool keep, int end);
     void reflect(int j, bool keep_sign, int behind);
+    int reflect_by_all_before(int j, const RowFunctions& rows);
     int reflect_by_those_before(int j, const RowFunctions& rows);
     void reflect_column(int j, double* x, const RowFunctions& rows) const;
     void reflect_only(int j, double* x, const RowFunctions& rows) const;
     void reflect_rows(int j, double* z, const RowFunctions& rows) const;
-    const double* column(int j) const
-    {
-        return g_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(n_);
-    }
+    const double* column(int j) const { return g_.data() + j * stride_; }
 
     int n_ = 0;
     int most_ = 0;
     int k_ = 0;
+    std::ptrdiff_t stride_ = 0;   // room for a register behind each column
     std::vector<double> g_;   // R above the diagonal, reflectors (first entry 1 implied) below
     std::vector<Reflection> reflections_;
     std::vector<std::array<int, 2>> ranges_;   // of columns: entries that may not be zero

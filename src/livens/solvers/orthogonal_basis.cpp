@@ -16,6 +16,10 @@ namespace {
 /// A column of so many numbers is gone through by the places of those that are not zero, if they are few.
 bool goes_by_places(int used, int numbers) { return (numbers < 16 ? 2 : 4) * used <= numbers; }
 
+/// Columns of so few numbers are gone through whole.
+constexpr int most_short = 32;
+constexpr bool is_short(int numbers) { return numbers <= most_short; }
+
 }   // namespace
 
 void OrthogonalBasis::resize(int n, int most)
@@ -23,7 +27,8 @@ void OrthogonalBasis::resize(int n, int most)
     n_ = n;
     most_ = most;
     k_ = 0;
-    g_.assign(count(n, most), 0.0);
+    stride_ = n + register_room;
+    g_.assign(static_cast<std::size_t>(most) * static_cast<std::size_t>(stride_), 0.0);
     reflections_.assign(static_cast<std::size_t>(most), {});
     ranges_.assign(static_cast<std::size_t>(most), {0, n});
     places_.assign(count(n, most), 0);
@@ -137,17 +142,44 @@ int OrthogonalBasis::reflect_by_those_before(int j, const RowFunctions& rows)
     return std::max(end, j + 1);
 }
 
+/// The same of short columns, which are not looked through.
+int OrthogonalBasis::reflect_by_all_before(int j, const RowFunctions& rows)
+{
+    double* x = column(j);
+    auto [first, end] = ranges_[static_cast<std::size_t>(j)];
+    int i = 0;
+    while (i < j && reflections_[i].all_reach <= first) ++i;   // which reach no row
+    if (i < j) {
+        rows.reflect_all(x, g_.data(), stride_, reflections_.data(), i, j);
+        end = std::max(end, reflections_[j - 1].all_reach);
+    }
+    while (end > j + 1 && x[end - 1] == 0) --end;
+    return std::max(end, j + 1);
+}
+
 double OrthogonalBasis::factorise(int k, bool keep_choices)
 {
     k_ = k;
     const RowFunctions& rows = row_functions();
     double smallest = 1;
     for (int j = 0; j < k; ++j) {
-        if (n_ >= large) Patience::ask();
-        const int end = reflect_by_those_before(j, rows);
-        lead(j, keep_choices, end);
-        reflect(j, keep_choices, std::max(end, reflections_[static_cast<std::size_t>(j)].lead + 1));
-        smallest = std::min(smallest, std::abs(column(j)[j]));
+        double* x = column(j);
+        if (is_short(n_)) {
+            std::fill_n(x + n_, register_room, 0.0);
+            const int end = reflect_by_all_before(j, rows);
+            lead(j, keep_choices, end);
+            Reflection& one = reflections_[j];
+            one.end = one.reach = std::max(end, one.lead + 1);
+            one.all_reach = std::max(one.reach, j > 0 ? reflections_[j - 1].all_reach : 0);
+            one.used = -1;
+            rows.make_reflection(x + j, one.end - j - 1, &one, keep_choices);
+        } else {
+            if (n_ >= large) Patience::ask();
+            const int end = reflect_by_those_before(j, rows);
+            lead(j, keep_choices, end);
+            reflect(j, keep_choices, std::max(end, reflections_[static_cast<std::size_t>(j)].lead + 1));
+        }
+        smallest = std::min(smallest, std::abs(x[j]));
     }
     return smallest;
 }
@@ -158,6 +190,7 @@ double OrthogonalBasis::factorise_pivoted(int k, std::span<int> order)
     const RowFunctions& rows = row_functions();
     for (int j = 0; j < most_; ++j) {
         order[j] = j;
+        std::fill_n(column(j) + n_, register_room, 0.0);
         reflections_[j].norm = inner(column(j), column(j), n_);
     }
     double smallest = 1;
@@ -189,6 +222,13 @@ double OrthogonalBasis::factorise_pivoted(int k, std::span<int> order)
 void OrthogonalBasis::apply_transposed(double* x) const
 {
     const RowFunctions& rows = row_functions();
+    if (is_short(n_)) {
+        double y[most_short + register_room];
+        std::fill_n(std::copy_n(x, n_, y), register_room, 0.0);
+        rows.reflect_all(y, g_.data(), stride_, reflections_.data(), 0, k_);
+        std::copy_n(y, n_, x);
+        return;
+    }
     for (int j = 0; j < k_; ++j) {
         std::swap(x[j], x[reflections_[j].lead]);
         reflect_only(j, x, rows);
@@ -198,6 +238,13 @@ void OrthogonalBasis::apply_transposed(double* x) const
 void OrthogonalBasis::apply(double* x) const
 {
     const RowFunctions& rows = row_functions();
+    if (is_short(n_)) {
+        double y[most_short + register_room];
+        std::fill_n(std::copy_n(x, n_, y), register_room, 0.0);
+        rows.reflect_back(y, g_.data(), stride_, reflections_.data(), k_);
+        std::copy_n(y, n_, x);
+        return;
+    }
     for (int j = k_ - 1; j >= 0; --j) {
         reflect_only(j, x, rows);
         std::swap(x[j], x[reflections_[j].lead]);
@@ -230,7 +277,11 @@ void OrthogonalBasis::null_space(double* z) const
     std::fill(z, z + count(n_, f), 0.0);
     for (int i = 0; i < f; ++i) z[count(k_ + i, f) + static_cast<std::size_t>(i)] = 1;
     for (int j = k_ - 1; j >= 0; --j) {
-        if (reflections_[j].beta != 0) reflect_rows(j, z, rows);
+        const Reflection& one = reflections_[j];
+        if (one.beta != 0 && is_short(n_))
+            rows.reflect_rows(z + count(j, f), f, one.beta, column(j) + j + 1, one.end - j - 1);
+        else if (one.beta != 0)
+            reflect_rows(j, z, rows);
         if (reflections_[j].lead != j)
             std::swap_ranges(z + count(j, f), z + count(j + 1, f), z + count(reflections_[j].lead, f));
     }

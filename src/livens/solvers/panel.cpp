@@ -16,6 +16,10 @@ namespace {
 /// A pivot of the first rows is taken unless another one is larger by this.
 constexpr double preferred = 8;
 
+/// Pivots that rows below are read and written once for; and numbers that rows are gone through by, the last
+/// of them into zeros behind the row.
+constexpr int at_once = 4;   // as eliminate_block() has it
+
 }   // namespace
 
 void Panel::resize(int n_rows, int n_pivots, int n_others)
@@ -23,27 +27,33 @@ void Panel::resize(int n_rows, int n_pivots, int n_others)
     n_rows_ = n_rows;
     n_pivots_ = n_pivots;
     width_ = n_pivots + n_others;
-    a_.assign(static_cast<std::size_t>(n_rows) * static_cast<std::size_t>(width_), 0.0);
+    stride_ = width_ + at_once - 1;
+    a_.assign(static_cast<std::size_t>(n_rows) * static_cast<std::size_t>(stride_), 0.0);
     exchanged_.assign(static_cast<std::size_t>(n_pivots), 0);
     reach_.assign(static_cast<std::size_t>(n_rows), width_);
     is_first_.assign(static_cast<std::size_t>(n_rows), 0);
     beta_.clear();
 }
 
-void Panel::clear() { std::fill(a_.begin(), a_.end(), 0.0); }
+void Panel::clear()
+{
+    for (int i = 0; i < n_rows_; ++i) std::fill_n(row(i), stride_, 0.0);
+}
 
 double Panel::largest() const
 {
+    const RowFunctions& rows = row_functions();
     double found = 0;
-    for (const double v : a_) found = std::max(found, std::abs(v));
+    for (int i = 0; i < n_rows_; ++i) found = std::max(found, rows.largest(row(i), width_));
     return found;
 }
 
 double Panel::largest_left() const
 {
+    const RowFunctions& rows = row_functions();
     double found = 0;
     for (int i = n_pivots_; i < n_rows_; ++i)
-        for (int j = n_pivots_; j < width_; ++j) found = std::max(found, std::abs(row(i)[j]));
+        found = std::max(found, rows.largest(row(i) + n_pivots_, width_ - n_pivots_));
     return found;
 }
 
@@ -62,67 +72,103 @@ void Panel::exchange(int i, int j)
     std::swap(is_first_[i], is_first_[j]);
 }
 
-bool Panel::choose_pivot(int k)
+Panel::Candidate Panel::candidate(int k, bool first_alone) const
 {
-    int best[2] = {-1, -1};   // of all rows, of the first ones
-    double size[2] = {-1, -1};
-    for (int i = k; i < n_rows_; ++i) {
-        const double here = std::abs(row(i)[k]);
-        if (here > size[0]) size[0] = here, best[0] = i;
-        if (is_first_[i] && here > size[1]) size[1] = here, best[1] = i;
-    }
+    Candidate found;
+    const double* a = row(k) + k;
+    for (int i = k; i < n_rows_; ++i, a += stride_)
+        if (!first_alone || is_first_[i]) found.look(i, std::abs(*a));
+    return found;
+}
+
+/// `best` is the largest of the column.
+bool Panel::choose_pivot(int k, const Candidate& best)
+{
     failed_ = k;   // stays so if this is the last
-    if (!(size[0] > 0) || !std::isfinite(size[0])) return false;
-    const int taken = size[1] * preferred >= size[0] ? best[1] : best[0];
+    if (!(best.size > 0) || !std::isfinite(best.size)) return false;
+    int taken = best.row;
+    if (!is_first_[taken]) {
+        const Candidate first = candidate(k, true);
+        if (first.size * preferred >= best.size) taken = first.row;
+    }
     exchanged_[k] = taken;
     exchange(k, taken);
     return true;
 }
 
-/// Row i less what pivot row k has of it, from a column on.
-void Panel::subtract(int i, int k, int from)
+/// Pivot k in its own column and in n others behind it. The largest of the first of these.
+template <int n>
+Panel::Candidate Panel::eliminate_column(int k)
 {
-    const double l = row(i)[k];
-    if (l == 0) return;
-    const int end = reach_[k];
-    subtract_scaled(row_functions(), row(i) + from, l, row(k) + from, end - from);
-    reach_[i] = std::max(reach_[i], end);
+    double pivots[n + 1];
+    std::copy_n(row(k) + k, n + 1, pivots);
+    const double inverse = 1 / pivots[0];
+    Candidate found;
+    double* own = row(k) + k;
+    for (int i = k + 1; i < n_rows_; ++i) {
+        own += stride_;
+        const double l = own[0] * inverse;
+        own[0] = l;
+        for (int j = 1; j <= n; ++j) own[j] -= l * pivots[j];
+        if constexpr (n > 0) found.look(i, std::abs(own[1]));
+    }
+    return found;
+}
+
+/// Pivots first..end - 1 in their own columns.
+bool Panel::eliminate_block(int first, int end)
+{
+    Candidate best = candidate(first, false);
+    for (int k = first; k < end; ++k) {
+        if (!choose_pivot(k, best)) return false;
+        switch (end - k) {
+        case 4:
+            best = eliminate_column<3>(k);
+            break;
+        case 3:
+            best = eliminate_column<2>(k);
+            break;
+        case 2:
+            best = eliminate_column<1>(k);
+            break;
+        default:
+            eliminate_column<0>(k);
+        }
+    }
+    return true;
+}
+
+/// Rows first..last - 1 less what pivot rows `of` .. end - 1 have of them, in the columns from `from` on.
+void Panel::subtract(int first, int last, std::pair<int, int> of, int from)
+{
+    const RowFunctions& rows = row_functions();
+    const auto [pivot, end] = of;
+    if (first >= last || pivot >= end) return;
+    const int behind = std::max(from, *std::max_element(reach_.begin() + pivot, reach_.begin() + end));
+    const int n = (behind - from + at_once - 1) / at_once * at_once;
+    if (end - pivot == at_once) {
+        rows.subtract_fours(row(first) + from, row(first) + pivot, row(pivot) + from, stride_, last - first,
+                            n);
+    } else {
+        for (int i = first; i < last; ++i)
+            for (int k = pivot; k < end; ++k)
+                if (row(i)[k] != 0) rows.subtract_scaled(row(i) + from, row(i)[k], row(k) + from, n);
+    }
+    for (int i = first; i < last; ++i) reach_[i] = std::max(reach_[i], behind);
 }
 
 bool Panel::eliminate(int n_first, int reach)
 {
     beta_.clear();
-    const auto subtract_pair = row_functions().subtract_pair;
     for (int i = 0; i < n_rows_; ++i) {
         is_first_[i] = i < n_first;
         reach_[i] = i < n_first ? reach : width_;
     }
-    // Columns are eliminated in pairs: each row below is then read and written once for two pivots.
-    for (int k = 0; k < n_pivots_; k += 2) {
-        const bool is_pair = k + 1 < n_pivots_;
-        if (!choose_pivot(k)) return false;
-        const double d = 1 / row(k)[k];
-        for (int i = k + 1; i < n_rows_; ++i) {
-            double* a = row(i) + k;
-            a[0] *= d;
-            if (is_pair) a[1] -= a[0] * row(k)[k + 1];
-        }
-        if (!is_pair) {
-            for (int i = k + 1; i < n_rows_; ++i) subtract(i, k, k + 1);
-            break;
-        }
-        if (!choose_pivot(k + 1)) return false;
-        const double e = 1 / row(k + 1)[k + 1];
-        for (int i = k + 2; i < n_rows_; ++i) row(i)[k + 1] *= e;
-        subtract(k + 1, k, k + 2);
-        const double *u = row(k) + k, *v = row(k + 1) + k;
-        const int end = std::max(reach_[k], reach_[k + 1]);
-        for (int i = k + 2; i < n_rows_; ++i) {
-            double* y = row(i) + k;
-            if (y[0] == 0 && y[1] == 0) continue;
-            subtract_pair(y + 2, y[0], u + 2, y[1], v + 2, end - k - 2);
-            reach_[i] = std::max(reach_[i], end);
-        }
+    for (int first = 0; first < n_pivots_; first += at_once) {
+        const int end = std::min(first + at_once, n_pivots_);
+        if (!eliminate_block(first, end)) return false;
+        for (int k = first + 1; k < end; ++k) subtract(k, k + 1, {first, k}, end);
+        subtract(end, n_rows_, {first, end}, end);
     }
     return true;
 }
@@ -193,14 +239,12 @@ void Panel::apply_transposed(double* x) const
     for (int k = n_pivots_ - 1; k >= 0; --k) std::swap(x[k], x[exchanged_[k]]);
 }
 
-void Panel::solve(double* x, const double* others) const
+void Panel::solve(double* x) const
 {
     const RowFunctions& rows = row_functions();
     for (int k = n_pivots_ - 1; k >= 0; --k) {
         const double* u = row(k);
-        const double sum = inner(rows, u + n_pivots_, others, width_ - n_pivots_) +
-                           inner(rows, u + k + 1, x + k + 1, n_pivots_ - k - 1);
-        x[k] = (x[k] - sum) / u[k];
+        x[k] = (x[k] - inner(rows, u + k + 1, x + k + 1, width_ - k - 1)) / u[k];
     }
 }
 

@@ -24,28 +24,21 @@ double ConstraintBasis::fill(const ModelTables& tables, int column, int row, Ins
     double* g = gradients.data() + longest_gradient * column;
     double* out = q.column(column);
     tables.rows.gradient(row, at, X, g);
-    tables.scaled_gradient(row, X, maps, g, out);
-    // Of few bodies their entries alone, upwards, whichever body comes first in the joint.
+    const double square = tables.scaled_gradient(row, X, maps, g, out);
+    // Of few bodies their entries alone.
     const RowTable& table = tables.rows[row];
-    const bool are_few = table.n_sides == 1 || table.n_sides == 2;
-    const int low = are_few ? std::min(table.bodies[0], table.bodies[table.n_sides - 1]) : 0,
-              high = are_few ? std::max(table.bodies[0], table.bodies[table.n_sides - 1])
-                             : tables.n_bodies() - 1;
-    const auto end_of = [&](int body) { return tables.bodies[body].first + tables.bodies[body].dofs; };
-    q.reach_of(column, tables.bodies[low].first, end_of(high));
-    const auto for_entries = [&](const auto& act) {
-        const auto run = [&](int first, int end) {
-            for (int i = first; i < end; ++i) act(out[i]);
-        };
-        if (!are_few) return run(0, tables.n_twists);
-        run(tables.bodies[low].first, end_of(low));
-        if (high != low) run(tables.bodies[high].first, end_of(high));
-    };
-    double sum = 0;
-    for_entries([&](double entry) { sum += entry * entry; });
     // A row without a gradient stays zero: its pivot then says that rank is lost.
-    const double scale = sum > 0 ? 1 / std::sqrt(sum) : 1.0;
-    for_entries([&](double& entry) { entry *= scale; });
+    const double scale = square > 0 ? 1 / std::sqrt(square) : 1;
+    int first = tables.n_twists, end = 0;
+    for (const int b : table.bodies) {
+        const BodyTable& body = tables.bodies[b];
+        first = std::min(first, body.first);
+        end = std::max(end, body.first + body.dofs);
+        double* const own = out + body.first;
+        for (int i = 0; i < 3; ++i) own[i] *= scale;
+        for (int i = 3; i < 6 && body.dofs == 6; ++i) own[i] *= scale;
+    }
+    q.reach_of(column, first, end);
     return scale;
 }
 

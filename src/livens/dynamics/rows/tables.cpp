@@ -64,16 +64,24 @@ void ModelTables::add_wrenches(int r, const double* X, const double* maps, const
     }
 }
 
-void ModelTables::scaled_gradient(int r, const double* X, const double* maps, const double* g,
-                                  double* out) const
+double ModelTables::scaled_gradient(int r, const double* X, const double* maps, const double* g,
+                                    double* out) const
 {
-    std::fill(out, out + n_twists, 0.0);
-    for (int side = 0; side < rows[r].n_sides; ++side) {
-        const int body = rows[r].bodies[side];
-        double q[6];
-        wrench(r, side, X, maps, g, q);
-        scale_row(bodies[body], maps + 12 * body, q, out + bodies[body].first);
+    const RowTable& table = rows[r];
+    for (int i = 0; i < n_twists; ++i) out[i] = 0;
+    double square = 0;
+    for (int side = 0; side < table.n_sides; ++side) {
+        const BodyTable& body = bodies[table.bodies[side]];
+        const double* map = maps + 12 * table.bodies[side];
+        double *y = out + body.first, of_side = 0, q[6];
+        plain_wrench(table, side, X, g, q);
+        if (body.offset) BodyTables::to_centre(map, q);
+        scale_row(body, map, q, y);
+        for (int i = 0; i < 3; ++i) of_side += y[i] * y[i];
+        for (int i = 3; i < 6 && body.dofs == 6; ++i) of_side += y[i] * y[i];
+        square += of_side;
     }
+    return square;
 }
 
 }   // namespace livens

@@ -52,8 +52,9 @@ struct ModelTables {
     /// q += factor times these of all sides, n_twists numbers.
     void add_wrenches(int r, const double* X, const double* maps, const double* g, double factor,
                       double* q) const;
-    /// The gradient as rows of scaled twists, n_twists numbers.
-    void scaled_gradient(int r, const double* X, const double* maps, const double* g, double* out) const;
+    /// The gradient as rows of scaled twists, n_twists numbers. Their square, which does not depend on which
+    /// of two bodies comes first.
+    double scaled_gradient(int r, const double* X, const double* maps, const double* g, double* out) const;
 };
 
 }   // namespace livens::inline dynamics_internal

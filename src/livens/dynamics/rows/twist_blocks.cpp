@@ -35,14 +35,17 @@ void scale_block(const ModelTables& tables, const double* maps_A, int i, const d
     double left[36], right[36], columns[36];
     fill_map(tables.bodies[i], maps_A + 12 * i, left);
     fill_map(tables.bodies[j], maps_B + 12 * j, right);
-    for (int r = 0; r < 6; ++r) {
-        for (int c = 0; c < 6; ++c) {
+    for (int r = 0; r < 6; ++r) {   // the first columns of a map have one entry each
+        for (int c = 0; c < 3; ++c) columns[6 * r + c] = block[6 * r + c] * right[7 * c];
+        for (int c = 3; c < 6; ++c) {
             double sum = 0;
             for (int k = 0; k < 6; ++k) sum += block[6 * r + k] * right[6 * c + k];
             columns[6 * r + c] = sum;
         }
     }
-    for (int r = 0; r < 6; ++r) {
+    for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 6; ++c) out[6 * r + c] = left[7 * r] * columns[6 * r + c];
+    for (int r = 3; r < 6; ++r) {
         for (int c = 0; c < 6; ++c) {
             double sum = 0;
             for (int k = 0; k < 6; ++k) sum += left[6 * r + k] * columns[6 * k + c];

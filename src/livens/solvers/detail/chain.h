@@ -26,6 +26,7 @@ struct Link : LinkValues {
     int r_near = 0, r_own = 0, r_far = 0;   // rows
     int p_near = 0, p_far = 0;              // numbers that pass at its ends: rows there, or none
     double scale = 1;                       // of what passes at its far end
+    double size = 0;                        // of its entries
     Panel inside, merged;
     int failed = -1;   // column inside that has no pivot
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace livens::inline solvers_internal {
@@ -35,22 +36,38 @@ public:
 
     /// n_rows numbers: x <- P x.
     void apply(double* x) const;
-    /// x, n_pivots numbers <- U^-1 (x - T others).
-    void solve(double* x, const double* others) const;
+    /// x, width numbers: the first, of pivots <- U^-1 (x - T others), the others behind them.
+    void solve(double* x) const;
     /// x <- U^-T x, others -= T^T x.
     void solve_transposed(double* x, double* others) const;
     /// x, n_rows numbers <- P^T x.
     void apply_transposed(double* x) const;
 
 private:
-    std::size_t place(int i) const { return static_cast<std::size_t>(i) * static_cast<std::size_t>(width_); }
-    bool choose_pivot(int k);
+    std::size_t place(int i) const { return static_cast<std::size_t>(i) * static_cast<std::size_t>(stride_); }
+    /// The largest number of a column so far.
+    struct Candidate {
+        int row = -1;
+        double size = -1;
+
+        void look(int i, double here)
+        {
+            if (!(here > size)) return;
+            row = i;
+            size = here;
+        }
+    };
+    Candidate candidate(int k, bool first_alone) const;
+    bool choose_pivot(int k, const Candidate& best);
     void exchange(int i, int j);
-    void subtract(int i, int k, int from);
+    template <int n>
+    Candidate eliminate_column(int k);
+    bool eliminate_block(int first, int end);
+    void subtract(int first, int last, std::pair<int, int> of, int from);
     bool reflect_column(int k);
     void reflect_vector(int k, double* x) const;
 
-    int n_rows_ = 0, n_pivots_ = 0, width_ = 0;
+    int n_rows_ = 0, n_pivots_ = 0, width_ = 0, stride_ = 0;   // from row to row: zeros behind each
     int failed_ = -1;
     std::vector<double> a_;
     std::vector<int> exchanged_, reach_;   // of pivots: the row taken; of rows: columns from here on are zero

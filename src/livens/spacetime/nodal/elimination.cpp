@@ -13,8 +13,8 @@
 #include "livens/solvers/dense.h"
 #include "livens/solvers/patience.h"
 #include "livens/solvers/short_rows.h"
-#include "livens/spacetime/elements/kernel_functions.h"
 #include "livens/spacetime/nodal/carried.h"
+#include "livens/spacetime/nodal/mass_products.h"
 #include "livens/spacetime/nodal/nodes.h"
 
 namespace livens::inline spacetime_internal {
@@ -49,33 +49,36 @@ class NullSpaces;
 /// Blocks of the pairs that one thread puts in.
 class Pairs final : public TangentSink {
 public:
-    explicit Pairs(NullSpaces& all);
+    Pairs(NullSpaces& all, int degree);
 
     void open(int e, int A, int B) override
     {
         e_ = e;
         A_ = A;
         B_ = B;
+        std::ranges::fill(product_, 0.0);
     }
-    void mass(int body, double factor, const double* H) override;
+    void mass(int, double, const double*) override {}   // all are taken together
+    bool take_masses(int e, const std::vector<double>& k, double h) override;
     void block(int body_i, int body_j, const double* values) override;
     void close() override;
-    bool take_transposed(int e, int A, int B) override;
 
 private:
     NullSpaces& all_;
+    MassProducts masses_;
     int e_ = 0, A_ = 0, B_ = 1;     // the open pair
     std::vector<double> product_;   // block of the tangent times the null space at B, n x f
+    std::vector<double> row_;       // of Z_A^T times it
 };
 
 class NullSpaces final : public Elimination {
 public:
     NullSpaces(const ModelTables& tables, const WindowLayout& layout, std::unique_ptr<LinearSolver> solver)
         : tables_(tables), f_(tables.freedoms()), structure_(structure_of(layout, tables.freedoms())),
-          solver_(std::move(solver))
+          solver_(std::move(solver)), degree_(layout.degree)
     {
         const auto n = static_cast<std::size_t>(tables.n_twists * f_);
-        pairs_.emplace_back(*this);
+        pairs_.emplace_back(*this, degree_);
         if (f_ == 0) return;   // nothing moves but what is driven
         matrix_.resize(structure_);
         solver_->analyse(structure_);
@@ -86,7 +89,7 @@ public:
     {
         layout_ = &layout;
         stand_at(tables_, nodes);
-        while (static_cast<int>(pairs_.size()) < Crew::size()) pairs_.emplace_back(*this);
+        while (static_cast<int>(pairs_.size()) < Crew::size()) pairs_.emplace_back(*this, degree_);
         for_each_item(layout.n_nodes(), least_shared, [&](int A) {
             if (layout.is_active(A) || layout.is_unknown(A))
                 nodes.basis(A).q.null_space(z_.data() + place(A));
@@ -98,7 +101,10 @@ public:
     void mass(int body, double factor, const double* H) override { pairs_[0].mass(body, factor, H); }
     void block(int i, int j, const double* values) override { pairs_[0].block(i, j, values); }
     void close() override { pairs_[0].close(); }
-    bool take_transposed(int e, int A, int B) override { return pairs_[0].take_transposed(e, A, B); }
+    bool take_masses(int e, const std::vector<double>& k, double h) override
+    {
+        return pairs_[0].take_masses(e, k, h);
+    }
     TangentSink* of_thread(int slot) override { return &pairs_[static_cast<std::size_t>(slot)]; }
     void close_with(std::span<const double> closing, const DenseMatrix& by_numbers) override;
     void stand_at(const ModelTables& tables, const Nodes& nodes) override
@@ -156,31 +162,53 @@ private:
     BlockStructure structure_;
     std::unique_ptr<LinearSolver> solver_;
     BlockMatrix matrix_;
+    int degree_;
     std::vector<Pairs> pairs_;   // of each thread
     std::vector<double> z_;      // null space of every node, n x f
     std::vector<double> x_;      // reduced unknowns
     std::vector<double> maps_;   // of the nodes where the tangent was formed; empty: bases may turn
 };
 
-Pairs::Pairs(NullSpaces& all)
-    : all_(all), product_(static_cast<std::size_t>(all.tables_.n_twists * all.f_), 0.0)
+Pairs::Pairs(NullSpaces& all, int degree)
+    : all_(all), masses_(all.tables_, degree + 1),
+      product_(static_cast<std::size_t>(all.tables_.n_twists * all.f_ + register_room), 0.0),
+      row_(static_cast<std::size_t>(all.f_ + register_room), 0.0)
 {}
 
-void Pairs::mass(int body, double factor, const double* H)
+/// Sets the blocks of all pairs: the product of (A, B) is the transpose of that of (B, A). All nodes but the
+/// ends of a window have rows and unknowns.
+bool Pairs::take_masses(int e, const std::vector<double>& k, double h)
 {
-    const double* __restrict z = all_.null_space(B_, body);
-    const int first = all_.tables_.bodies[body].first, f = all_.f_;
-    double* __restrict v = product_.data() + first * f;
-    for (int j = 0; j < 3 * f; ++j) v[j] = factor * z[j];
-    if (all_.tables_.bodies[body].dofs == 3) return;
-    const double* __restrict z0 = z + 3 * f;
-    const double* __restrict z1 = z + 4 * f;
-    const double* __restrict z2 = z + 5 * f;
-    for (int i = 0; i < 3; ++i) {
-        const double a = factor * H[i], b = factor * H[i + 3], c = factor * H[i + 6];
-        double* __restrict w = v + (3 + i) * f;
-        for (int j = 0; j < f; ++j) w[j] = a * z0[j] + b * z1[j] + c * z2[j];
+    const WindowLayout& layout = *all_.layout_;
+    const int f = all_.f_, p = layout.degree, first = e * p;
+    if (f == 0) return true;   // there is no matrix
+    const int stride = all_.matrix_.stride(e);
+    const auto at = [&](int a, int b) {
+        return all_.matrix_.block(e, place_of_row(layout, first + a), first + b);
+    };
+    std::vector<double> by_row(static_cast<std::size_t>(p + 1)), by_column(by_row);
+    for (int part = 0; part < masses_.n_parts(); ++part) {
+        for (int a = 0; a <= p; ++a)
+            masses_.place(part, a, all_.nodes_->X(first + a), all_.nodes_->maps(first + a),
+                          all_.z_.data() + all_.place(first + a));
+        for (int a = 0; a <= p; ++a) {
+            if (f >= 64) Patience::ask();
+            masses_.multiply(a);
+            for (int b = 0; b <= p; ++b) {
+                by_row[b] = k[a * (p + 1) + b] / h;
+                by_column[b] = k[b * (p + 1) + a] / h;
+            }
+            int begin = layout.is_unknown(first + a) ? a : a + 1,
+                end = layout.is_unknown(first + p) ? p : p - 1;
+            if (layout.is_active(first + a) && begin <= end)
+                masses_.put_rows({at(a, begin), stride, begin, end}, a, by_row.data(), part > 0);
+            begin = a + 1;
+            end = layout.is_active(first + p) ? p : p - 1;
+            if (layout.is_unknown(first + a) && begin <= end)
+                masses_.put_columns({at(begin, a), stride, begin, end}, a, by_column.data(), part > 0);
+        }
     }
+    return true;
 }
 
 void Pairs::block(int body_i, int body_j, const double* values)
@@ -192,36 +220,24 @@ void Pairs::block(int body_i, int body_j, const double* values)
         double* __restrict v = product_.data() + (bodies[body_i].first + i) * f;
         for (int k = 0; k < bodies[body_j].dofs; ++k) {
             const double s = values[6 * i + k];
-            if (s == 0) continue;
-            const double* __restrict row = z + k * f;
-            for (int j = 0; j < f; ++j) v[j] += s * row[j];
+            if (s != 0) subtract_scaled(v, -s, z + k * f, f);
         }
     }
 }
 
-/// The block at (A, B) <- Z_A^T product.
+/// The block at (A, B) += Z_A^T product.
 void Pairs::close()
 {
     const int f = all_.f_;
     if (f == 0) return;
     if (f >= 64) Patience::ask();
-    const int stride = all_.matrix_.stride(e_);
-    double* const block = all_.matrix_.block(e_, place_of_row(*all_.layout_, A_), B_);
-    for (int r = 0; r < f; ++r) std::fill_n(block + r * stride, f, 0.0);
-    lanes::functions(4)->blocks->add_from_left(all_.z_.data() + all_.place(A_), {all_.tables_.n_twists, f, 1},
-                                               product_.data(), f, block, stride);
-}
-
-bool Pairs::take_transposed(int e, int A, int B)
-{
-    const int f = all_.f_;
-    if (f == 0) return true;
-    const int stride = all_.matrix_.stride(e);
-    const double* from = all_.matrix_.block(e, place_of_row(*all_.layout_, B), A);
-    double* to = all_.matrix_.block(e, place_of_row(*all_.layout_, A), B);
-    for (int i = 0; i < f; ++i)
-        for (int j = 0; j < f; ++j) to[i * stride + j] = from[j * stride + i];
-    return true;
+    const RowFunctions& rows = row_functions();
+    const double* z = all_.z_.data() + all_.place(A_);
+    double* to = all_.matrix_.block(e_, place_of_row(*all_.layout_, A_), B_);
+    for (int i = 0; i < f; ++i, to += all_.matrix_.stride(e_)) {
+        rows.product(row_.data(), {z + i, f, product_.data(), f, all_.tables_.n_twists}, f);
+        subtract_scaled(to, -1, row_.data(), f);
+    }
 }
 
 /// P(0) is added at the first node, P(T) taken off at the last.

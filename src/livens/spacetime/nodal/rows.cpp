@@ -10,6 +10,7 @@
 #include "livens/dynamics/instant/instant.h"
 #include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
+#include "livens/solvers/row_functions.h"
 #include "livens/spacetime/nodal/nodes.h"
 
 namespace livens {
@@ -65,8 +66,8 @@ void NodalRows::add_element(const WindowLayout& layout, const Nodes& nodes, int 
     const double* y = nodes.dX(e, 1);
     double factor = k[1] / layout.h(e);
     if (n_nodes > 2) {
-        std::ranges::fill(at.work, 0.0);
-        for (int B = 1; B < n_nodes; ++B) accumulate(at.work.data(), k[B], nodes.dX(e, B), at.work.size());
+        row_functions().product(at.work.data(), {k + 1, 1, y, size_of_node_, n_nodes - 1},
+                                static_cast<int>(size_of_node_));
         y = at.work.data();
         factor = 1 / layout.h(e);
     }

@@ -91,30 +91,35 @@ void Tangent::form_element(const Point& of, int e, Workspace& at)
 {
     const auto& [layout, nodes, rows] = of;
     TangentSink& sink = *at.sink;
-    double H[9] = {};
-    // of mass alone, as the elements' own numbers are
-    const bool is_symmetric = tables_.loads.with_tangent.empty() && rule_.points == Points::lobatto;
     Patience::ask();
-    if (!tables_.loads.with_tangent.empty()) evaluate_loads(of, e, at);
+    const bool are_masses_taken = sink.take_masses(e, rule_.k, layout.h(e));
+    const bool has_loads = !tables_.loads.with_tangent.empty();
+    if (has_loads) evaluate_loads(of, e, at);
     for (int a = 0; a < rule_.size(); ++a) {
         const int A = e * rule_.degree + a;
         if (!layout.is_active(A)) continue;
         for (int b = 0; b < rule_.size(); ++b) {
             const int B = e * rule_.degree + b;
             if (!layout.is_unknown(B)) continue;
-            if (b < a && is_symmetric && layout.is_unknown(A) && layout.is_active(B) &&
-                sink.take_transposed(e, A, B))
-                continue;
+            const bool is_own = A == B && (a > 0 || e == 0);
+            if (are_masses_taken && !is_own && !has_loads) continue;
             sink.open(e, A, B);
-            const double factor = rule_.k[a * rule_.size() + b] / layout.h(e);
-            for (int body = 0; body < tables_.n_bodies(); ++body) {
-                if (tables_.bodies[body].dofs == 6) tables_.bodies.spin_mass(body, nodes.X(A), nodes.X(B), H);
-                sink.mass(body, factor, H);
-            }
-            if (A == B && (a > 0 || e == 0)) add_node_terms(of, A, at);
-            if (!tables_.loads.with_tangent.empty()) add_loads(of, e, a, b, at);
+            if (!are_masses_taken) add_masses(of, e, a, b, at);
+            if (is_own) add_node_terms(of, A, at);
+            if (has_loads) add_loads(of, e, a, b, at);
             sink.close();
         }
+    }
+}
+
+void Tangent::add_masses(const Point& of, int e, int a, int b, Workspace& at) const
+{
+    const double *X_A = of.nodes.X(e * rule_.degree + a), *X_B = of.nodes.X(e * rule_.degree + b);
+    const double factor = rule_.k[a * rule_.size() + b] / of.layout.h(e);
+    double H[9] = {};
+    for (int body = 0; body < tables_.n_bodies(); ++body) {
+        if (tables_.bodies[body].dofs == 6) tables_.bodies.spin_mass(body, X_A, X_B, H);
+        at.sink->mass(body, factor, H);
     }
 }
 

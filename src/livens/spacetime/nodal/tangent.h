@@ -24,9 +24,9 @@ public:
     /// NodalRows of body i by twists of body j: 6 x 6 row by row.
     virtual void block(int body_i, int body_j, const double* values) = 0;
     virtual void close() = 0;
-    /// In place of all these, where (A, B) is the transpose of (B, A), which was closed before; false: it is
-    /// not taken.
-    virtual bool take_transposed(int /*e*/, int /*A*/, int /*B*/) { return false; }
+    /// In place of all mass() of element e, before its pairs are opened, of which those that have nothing
+    /// else then are not: the factor of its nodes a, b is k_ab / h, k row by row. False: it is not taken.
+    virtual bool take_masses(int /*e*/, const std::vector<double>& /*k*/, double /*h*/) { return false; }
     /// The sink of a thread, for elements of its own; null: all come from one thread, to this.
     virtual TangentSink* of_thread(int /*slot*/) { return nullptr; }
 };
@@ -65,6 +65,7 @@ private:
     Workspace workspace() const;
     void form_element(const Point& of, int e, Workspace& at);
     void evaluate_loads(const Point& of, int e, Workspace& at);
+    void add_masses(const Point& of, int e, int a, int b, Workspace& at) const;
     void add_node_terms(const Point& of, int A, Workspace& at) const;
     void add_constraints(const Point& of, int A, Workspace& at) const;
     void add_loads(const Point& of, int e, int a, int b, Workspace& at) const;
