@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How far apart the ends of time may be: motions of seven mechanisms, from what is known of them at two instants.
 
-    benchmarks/ends_apart.py build/release/livens [--guess 0.9] [--ends xx xp px] [--mechanism NAME ..] [--limit 300] [--jobs 2] [--least N] [--control N]
+    benchmarks/ends_apart.py build/release/livens [--guess 0.9] [--ends xx xp px] [--mechanism NAME ..] [--limit 300] [--jobs 2] [--least N] [--control N] [--newton]
 
 Each motion is marched first, from 0.5 s on. Then places (x) or momenta (p) at its two ends are all that is known, over 0.25 to
 4 s, beside rates times `--guess` at the start and none at the end: lobatto(8), 20 elements a second. A motion counts if the
@@ -10,7 +10,9 @@ of their errors, times what a small change of the start grows by. Several motion
 those found by plain guesses (marches from either end, with the rates of the other end, too), without those that ends which are led or
 other rates found; and the control, what Newton's iteration finds from its first guess alone, which where no rates are stated at the
 known places is the nearer of a march from rest and one with the rates of the other end. Exit status 1 if fewer than --least count,
-or fewer than --control more than the control has.
+or fewer than --control more than the control has. With --newton all is the control of plain Newton: each problem is given one guess,
+the march from the stated start with the rates as they are guessed (or those of the stated momenta), and counts if the iteration from it
+gets there at once, by no other guess, led end or rate.
 """
 import argparse
 import concurrent.futures
@@ -72,12 +74,12 @@ class Runs:
     def __init__(self, program, folder, limit):
         self.program, self.folder, self.limit = str(pathlib.Path(program).resolve()), pathlib.Path(folder), limit
 
-    def solve(self, name, tree):
+    def solve(self, name, tree, *more):
         """Exit status, the summary and the run; status -1: out of time."""
         file, run = self.folder / f"{name}.toml", self.folder / f"{name}.nc"
         file.write_text(scenario(tree))
         try:
-            done = subprocess.run([self.program, "solve", str(file), "-o", str(run), "--json", "--force"], capture_output=True, text=True,
+            done = subprocess.run([self.program, "solve", str(file), "-o", str(run), "--json", "--force", *more], capture_output=True, text=True,
                                   timeout=self.limit, cwd=self.folder)
         except subprocess.TimeoutExpired:
             return -1, {}, run
@@ -112,15 +114,22 @@ def between(tree, first, last, duration, ends, guess):
                    "start": {"given": at_start}, "end": {"given": at_end}}
 
 
+def march_from(tree):
+    """The scenario of a march from the start that it has."""
+    march = {key: value for key, value in copy.deepcopy(tree).items() if key != "end"} | {"start": {"initial": "project"}}
+    for body in march["body"]:
+        body.pop("end")
+    return march
+
+
 def is_confirmed(runs, name, tree, run, summary):
     """Whether a march from the start of a run arrives where it does."""
     end = tree["time"]["end"]
     start, arrival = (runs.state(run, tree, t) for t in (0, end))
-    march = {key: value for key, value in copy.deepcopy(tree).items() if key != "end"} | {"start": {"initial": "project"}}
+    march = march_from(tree)
     march["time"]["elements"] *= 2
     march["method"]["growth"] = True
     for body in march["body"]:
-        body.pop("end")
         body["start"] = placed(start[body["name"]], 1)
     status, of_march, other = runs.solve(name + "_march", march)
     if status not in (0, 7):
@@ -130,13 +139,21 @@ def is_confirmed(runs, name, tree, run, summary):
     return off / length <= growth * (EXACT + 10 * (summary.get("estimated_error") or 0)) + 10 * (of_march.get("estimated_error") or 0)
 
 
-def case(runs, name, tree, forward, ends, duration, guess):
+def case(runs, name, tree, forward, ends, duration, guess, by_newton):
     """Status, whether a march confirms it, the note on how it was found, and whether that was by the first guess."""
     asked = between(tree, runs.state(forward, tree, BEGIN), runs.state(forward, tree, BEGIN + duration), duration, ends, guess)
     label = f"{name}_{ends}_{guess}_{duration}"
-    status, summary, run = runs.solve(label, asked)
+    more = []
+    if by_newton:
+        status, _, run = runs.solve(label + "_guess", march_from(asked))
+        if status not in (0, 7):   # no guess
+            return label, status, False, "", False
+        more = ["--guess", str(run)]
+    status, summary, run = runs.solve(label, asked, *more)
     told = next((note for note in summary.get("notes", []) if note.startswith("found ")), "")
-    return label, status, status == 0 and is_confirmed(runs, label, asked, run, summary), told, summary.get("rescued") == 0
+    is_first = summary.get("rescued") == 0 and not told
+    counts = status == 0 and (is_first or not by_newton) and is_confirmed(runs, label, asked, run, summary)
+    return label, status, counts, told, is_first
 
 
 def main():
@@ -149,6 +166,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--least", type=int, default=0)
     parser.add_argument("--control", type=int, default=0)
+    parser.add_argument("--newton", action="store_true")
     options = parser.parse_args()
     counted = plain = first = tried = 0
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
@@ -160,11 +178,11 @@ def main():
             if status not in (0, 7):
                 sys.exit(f"{name}: its march ends with {status}")
             tree.pop("start", None)
-            asked += [pool.submit(case, runs, name, tree, run, ends, T, options.guess) for ends in options.ends for T in DURATIONS]
+            asked += [pool.submit(case, runs, name, tree, run, ends, T, options.guess, options.newton) for ends in options.ends for T in DURATIONS]
         for one in asked:
             label, status, confirmed, told, is_first = one.result()
             tried, counted, plain = tried + 1, counted + confirmed, plain + (confirmed and not told)
-            first += confirmed and is_first and not told   # a guess that cannot be begun with is no run
+            first += confirmed and is_first   # a guess that cannot be begun with is no run
             by = told or ("" if not confirmed or is_first else "found by another plain guess than the first")
             print(f"{label:45s} {'yes' if confirmed else 'no '} {status:3d} {by}", flush=True)
     print(f"{counted} of {tried}, {plain} of them by plain guesses, {first} by the first guess alone")

@@ -196,7 +196,7 @@ TIES = [
     ("If it exceeds $«30» \\varepsilon$", f"{TIME}/accuracy/accuracy.cpp", r"hopeless = ([^;]+);"),
     ("The degree is «7», and «12» for accuracies below $«10^{-9}»$", f"{TIME}/accuracy/until_accurate.h",
      r"preferred_degree = (\d+), high_degree = (\d+),.*?high_accuracy = ([^;]+);"),
-    ("(«1.5» of them in one element, by the first eight elements)", f"{TIME}/accuracy/until_accurate.h", r"double fit = ([^;]+);"),
+    ("(«1.5» of them in one element, by the first five elements)", f"{TIME}/accuracy/until_accurate.h", r"double fit = ([^;]+);"),
     ("with $\\delta T > «20»$", f"{TIME}/accuracy/choice.cpp", r"fast_decay = ([^;]+);"),
     ("with $\\omega T > «50»$", f"{TIME}/accuracy/accuracy.h", r"fast_vibration = ([^;]+);"),
     ("After «32» elements radau is tried", f"{TIME}/accuracy/choice.cpp", r"tried_after = (\d+);"),

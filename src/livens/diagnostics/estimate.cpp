@@ -5,7 +5,6 @@
 #include "livens/diagnostics/estimate.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -19,24 +18,19 @@ namespace livens {
 
 namespace {
 
-/// Reactions on both sides of an instant: [f, t / length].
-std::array<double, 12> loads_of(const JointSample& joint, double length)
+/// Of both sides of an instant: [f, t / length] of one joint less a share of another's.
+double norm_of(const JointSample& one, const JointSample& other, double share, double length)
 {
-    std::array<double, 12> all;
-    int k = 0;
-    for (const Reaction* side : {&joint.left, &joint.right})
+    double forces = 0, torques = 0;
+    const auto add = [&](const Reaction& a, const Reaction& b) {
         for (int i = 0; i < 3; ++i) {
-            all[k++] = side->force[i];
-            all[k++] = side->torque[i] / length;
+            const double f = a.force[i] - share * b.force[i], t = a.torque[i] - share * b.torque[i];
+            forces += f * f, torques += t * t;
         }
-    return all;
-}
-
-double norm_of(const std::array<double, 12>& load)
-{
-    double sum = 0;
-    for (const double x : load) sum += x * x;
-    return std::sqrt(0.5 * sum);
+    };
+    add(one.left, other.left);
+    add(one.right, other.right);
+    return std::sqrt(0.5 * (forces + torques / (length * length)));
 }
 
 double digits_of(double error)
@@ -75,6 +69,8 @@ void ErrorMeter::compare(const Motion& finer, int first, int last)
     reach(last);
     std::vector<int> missing;
     const JointSampler joints(model_, motion_), finer_joints(model_, finer);
+    State a, b;
+    std::vector<JointSample> held, other_held;
     for (int end = first; end <= last; ++end) {
         Patience::ask();
         // Compared at ends that both have; where laws bend each has its own instant, and the error there is
@@ -84,15 +80,15 @@ void ErrorMeter::compare(const Motion& finer, int first, int last)
             missing.push_back(end);
             continue;
         }
-        const State a = motion_.at_end(end), b = finer.at_end(there);
+        motion_.at_end(end, Side::right, a);
+        finer.at_end(there, Side::right, b);
         compare_states(end, a, b);
         if (estimate_.n_joints == 0 || finer.end_multipliers.empty()) continue;
         // where a piece begins or ends, the other side is that of another one
         const bool begins = end == first && first > 0, ends = end == last && last < motion_.n_elements();
-        compare_reactions(end, joints.forces_at(a), finer_joints.forces_at(b),
-                          begins ? Side::right
-                          : ends ? Side::left
-                                 : Side::middle);
+        joints.forces_at(end, a, held);
+        finer_joints.forces_at(there, b, other_held);
+        compare_reactions(end, held, other_held, begins ? Side::right : ends ? Side::left : Side::middle);
     }
     for (auto end = missing.rbegin(); end != missing.rend(); ++end) fill(*end);   // the one behind is known
     if (!missing.empty() && missing.back() == last)   // nothing is known of how the other one ends
@@ -129,7 +125,8 @@ void ErrorMeter::compare_states(int end, const State& a, const State& b)
     }
 }
 
-void ErrorMeter::compare_reactions(int end, std::vector<JointSample> a, std::vector<JointSample> b, Side side)
+void ErrorMeter::compare_reactions(int end, std::vector<JointSample>& a, std::vector<JointSample>& b,
+                                   Side side)
 {
     for (std::size_t j = 0; j < a.size(); ++j) {
         if (!a[j].is_bounded || !b[j].is_bounded) continue;   // no number stands for it
@@ -204,25 +201,34 @@ double ErrorEstimate::error(int end) const
 
 BodyGap gap_between(const State& a, const State& b, const Body& body, int index, double length)
 {
-    const Matrix34 dX = a.X[index] - b.X[index], dV = a.V[index] - b.V[index];
+    const double *X = a.X[index].a, *other_X = b.X[index].a, *V = a.V[index].a, *other_V = b.V[index].a;
     // Of states: by their size, and where the body has come to means nothing.
-    if (body.holds_states()) return {norm(dV.column(0)) / body.state_speed, 0, norm(dV.column(0)), 0};
-    const Vector4 centre = point(mass_properties(body.mass).center_of_mass);
+    if (body.holds_states()) {
+        const double speed = norm(Vector3{V[0] - other_V[0], V[1] - other_V[1], V[2] - other_V[2]});
+        return {speed / body.state_speed, 0, speed, 0};
+    }
+    Vector3 shift{}, push{};   // of the centre of mass
+    double turn = 0, spin = 0;
+    for (int c = 0; c < 4; ++c) {
+        const double share = c == 0 ? 1 : body.mass(c, 0) / body.mass(0, 0);
+        for (int i = 0; i < 3; ++i) {
+            const double dx = X[3 * c + i] - other_X[3 * c + i], dv = V[3 * c + i] - other_V[3 * c + i];
+            shift[i] += share * dx, push[i] += share * dv;
+            if (c > 0) turn += dx * dx, spin += dv * dv;
+        }
+    }
     // the chord of a turn by phi is 2 sqrt(2) sin(phi / 2)
-    const double chord = norm(directors(dX)) / (2 * std::sqrt(2.0));
-    return {norm(dX * centre) / length, chord > 1 ? std::numbers::pi : 2 * arc_sine(chord), norm(dV * centre),
-            norm(directors(dV)) / std::sqrt(2.0)};
+    const double chord = std::sqrt(turn / 8);
+    return {norm(shift) / length, chord > 1 ? std::numbers::pi : 2 * arc_sine(chord), norm(push),
+            std::sqrt(spin / 2)};
 }
 
 double gap_between(const JointSample& a, const JointSample& b, double length)
 {
-    std::array<double, 12> gap = loads_of(a, length);
-    const std::array<double, 12> other = loads_of(b, length);
-    for (std::size_t i = 0; i < gap.size(); ++i) gap[i] -= other[i];
-    return norm_of(gap);
+    return norm_of(a, b, 1, length);
 }
 
-double size_of(const JointSample& joint, double length) { return norm_of(loads_of(joint, length)); }
+double size_of(const JointSample& joint, double length) { return norm_of(joint, joint, 0, length); }
 
 void ErrorEstimate::find_largest(const TimeMesh& mesh)
 {

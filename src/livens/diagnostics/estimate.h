@@ -108,7 +108,7 @@ public:
 private:
     void reach(int end);
     void compare_states(int end, const State& a, const State& b);
-    void compare_reactions(int end, std::vector<JointSample> a, std::vector<JointSample> b, Side side);
+    void compare_reactions(int end, std::vector<JointSample>& a, std::vector<JointSample>& b, Side side);
     void fill(int end);
 
     const Model& model_;

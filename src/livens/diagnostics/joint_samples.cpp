@@ -266,10 +266,11 @@ Reaction JointSampler::Parts::reaction(const Model& model, int joint, std::span<
         const RowTable& row = rows[static_cast<std::size_t>(r)];
         double g[RowTables::gradient_size];
         rows.gradient(r, {}, X.data()->data(), g);
-        for (int side = 0; side < row.n_sides; ++side)
+        for (int side = 0; side < row.n_sides; ++side) {
+            if (row.bodies[side] != j.second) continue;
             for (const int column : row.columns[side])
-                for (int i = column; row.bodies[side] == j.second && i < column + 3; ++i)
-                    F.a[i] -= multipliers[r] * g[12 * side + i];
+                for (int i = column; i < column + 3; ++i) F.a[i] -= multipliers[r] * g[12 * side + i];
+        }
     }
     return joint_reaction(j, X[j.second], F);
 }
@@ -298,24 +299,29 @@ std::vector<JointSample> JointSampler::at(const State& given) const
 }
 
 /// At element ends, where nothing has to be found but what multipliers say.
-std::vector<JointSample> JointSampler::forces_at(const State& given) const
+void JointSampler::forces_at(int end, const State& state, std::vector<JointSample>& samples) const
 {
-    const int end = element_end_at(motion_.mesh, given.t);
+    if (!find_forces(end, state, samples)) samples = at(state);
+}
+
+/// False: they need more than the multipliers at element ends.
+bool JointSampler::find_forces(int end, const State& given, std::vector<JointSample>& samples) const
+{
     const auto n_independent = static_cast<int>(parts_->independent.size());
     const bool is_redundant = n_independent < model_.n_rows();
-    if (end < 0 || motion_.end_multipliers.empty() || model_.has_events()) return at(given);
-    if (model_.has_drives() && !is_redundant) return at(given);
+    if (end < 0 || motion_.end_multipliers.empty() || model_.has_events()) return false;
+    if (model_.has_drives() && !is_redundant) return false;
     const std::size_t n = static_cast<std::size_t>(motion_.n_rows);
     const std::span<const double> both =
         std::span(motion_.end_multipliers).subspan(2 * static_cast<std::size_t>(end) * n, 2 * n);
-    if (std::ranges::any_of(both, [](double x) { return std::isnan(x); })) return at(given);
-    std::vector<JointSample> samples(model_.joints().size());
+    if (std::ranges::any_of(both, [](double x) { return std::isnan(x); })) return false;
     const Reaction* found = nullptr;
     if (is_redundant) {
         if (!parts_->least_loads) parts_->least_loads.emplace(model_, parts_->rows, n_independent);
         found = parts_->least_loads->find(given.t, given.X, both);
-        if (found == nullptr) return at(given);
+        if (found == nullptr) return false;
     }
+    samples.assign(model_.joints().size(), {});
     const bool jumps = !std::ranges::equal(both.first(n), both.last(n));
     for (std::size_t j = 0; j < samples.size(); ++j) {
         JointSample& sample = samples[j];
@@ -328,7 +334,7 @@ std::vector<JointSample> JointSampler::forces_at(const State& given) const
         sample.left = reaction(0);
         sample.right = jumps ? reaction(1) : sample.left;
     }
-    return samples;
+    return true;
 }
 
 const UniqueReactions* JointSampler::least_at(const State& state, int end) const

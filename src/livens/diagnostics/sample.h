@@ -79,8 +79,9 @@ public:
 
     /// In a state that sample_state() gave.
     std::vector<JointSample> at(const State& state) const;
-    /// The same forces and torques for less, without what is_unique and shared say of them.
-    std::vector<JointSample> forces_at(const State& state) const;
+    /// The same forces and torques at an element end (-1: between them) for less, without what is_unique and
+    /// shared say of them.
+    void forces_at(int end, const State& state, std::vector<JointSample>& samples) const;
     /// Where joints are redundant: the least reactions at an element end, of the multipliers on both sides,
     /// found once for those who ask one after the other. Null: there are none, or not for both sides.
     const UniqueReactions* least_at(const State& state, int end) const;
@@ -88,9 +89,11 @@ public:
 private:
     struct Parts;
 
+    bool find_forces(int end, const State& given, std::vector<JointSample>& samples) const;
+
     const Model& model_;
     const Motion& motion_;
     std::shared_ptr<Parts> parts_;
 };
 
-}   // namespace livens
+}   // namespace gnu::visibility("default")]]livens

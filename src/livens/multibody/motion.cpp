@@ -120,12 +120,10 @@ std::size_t Motion::n_bytes() const
     return numbers * sizeof(double);
 }
 
-std::vector<double> Motion::angles_at(int end) const
+std::span<const double> Motion::angles_at(int end) const
 {
-    if (load_angles.empty()) return {};
     const std::size_t n = load_angles.size() / mesh.ends.size();
-    const auto first = load_angles.begin() + static_cast<std::ptrdiff_t>(n) * end;
-    return {first, first + static_cast<std::ptrdiff_t>(n)};
+    return std::span(load_angles).subspan(n * static_cast<std::size_t>(end), n);
 }
 
 State Motion::at(double t) const
@@ -152,7 +150,8 @@ State Motion::at(double t) const
         state.X.push_back(body_of(x, b));
         state.V.push_back((1 / h) * body_of(rates, b));
     }
-    state.angles = angles_at(element);
+    const std::span<const double> angles = angles_at(element);
+    state.angles.assign(angles.begin(), angles.end());
     return state;
 }
 
@@ -164,23 +163,27 @@ int Impacts::at(int end) const
 
 State Motion::at_end(int end, Side side) const
 {
+    State state;
+    at_end(end, side, state);
+    return state;
+}
+
+void Motion::at_end(int end, Side side, State& state) const
+{
     assert(end >= 0 && end <= n_elements());
     assert(static_cast<int>(velocities.size()) == (n_elements() + 1) * n_bodies);
-    State state;
     state.is_of_motion = true;
     state.t = mesh.ends[end];
-    state.X.reserve(static_cast<std::size_t>(n_bodies));
-    state.V.reserve(static_cast<std::size_t>(n_bodies));
+    state.X.resize(static_cast<std::size_t>(n_bodies));
     const std::span<const double> x =
         end < n_elements() ? X.coefficient(end, 0) : X.coefficient(end - 1, X.degree);
-    for (int b = 0; b < n_bodies; ++b) {
-        state.X.push_back(body_of(x, b));
-        state.V.push_back(velocities[end * n_bodies + b]);
-    }
+    for (int b = 0; b < n_bodies; ++b) state.X[b] = body_of(x, b);
+    const auto v = velocities.begin() + static_cast<std::ptrdiff_t>(end) * n_bodies;
+    state.V.assign(v, v + n_bodies);
     const int impact = side == Side::left ? impacts.at(end) : -1;
     if (impact >= 0) std::copy_n(impacts.velocities.begin() + impact * n_bodies, n_bodies, state.V.begin());
-    state.angles = angles_at(end);
-    return state;
+    const std::span<const double> angles = angles_at(end);
+    state.angles.assign(angles.begin(), angles.end());
 }
 
 Reaction joint_reaction(const Model& model, int joint, std::span<const Matrix34> X,

@@ -109,9 +109,10 @@ struct Motion : EndValues, Discretisation {
     State at(double t) const;
     /// On one side of an impact.
     State at_end(int end, Side side = Side::right) const;
+    void at_end(int end, Side side, State& state) const;   ///< in the memory of this one
 
 private:
-    std::vector<double> angles_at(int end) const;
+    std::span<const double> angles_at(int end) const;
 };
 
 /// What the joint exerts on its second body.

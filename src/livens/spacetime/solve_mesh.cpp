@@ -164,7 +164,7 @@ void refuse_undetermined(const NumberedProblem& numbered, const Method& method, 
 {
     const Motion& motion = solution.motion;
     SolveReport& report = solution.report;
-    const ElementRule rule = lobatto_rule(std::clamp(2 * std::get<Mixed>(method).degree, 4, 8));
+    const ElementRule& rule = lobatto_rule(std::clamp(2 * std::get<Mixed>(method).degree, 4, 8));
     if (numbered.size() > 0) {
         FoundNumbers found = solution.numbers;
         std::vector<double> values = found.values;
@@ -229,7 +229,7 @@ void finish(const ModelTables& tables, Window& window, const Ends& ends, const M
 UnknownsWindow::Maker maker_of(const Method& method, bool look_at_laws, const PhasePlan* plan)
 {
     if (const auto* mixed = std::get_if<Mixed>(&method)) return mixed_windows(*mixed);
-    const ElementRule rule = rule_of(method);
+    const ElementRule& rule = rule_of(method);
     if (plan == nullptr) return nodal_windows(rule, look_at_laws);
     return [=](const NumberedProblem::Instance& of) {
         return std::make_shared<PhasesWindow>(of.rebuilt.model, of.mesh, of.ends, *plan, rule, look_at_laws);

@@ -18,6 +18,36 @@ namespace {
 constexpr int most_steps = 60;
 constexpr double met = 1e-12;   // of the forces
 
+/// But for what drives say.
+bool holds(const Model& model, const State& state)
+{
+    constexpr double near = 1e-6;   // of the scale of a row
+    for (const Joint& joint : model.joints())
+        for (const ConstraintRow& row : joint.rows)
+            if (row.drives.empty() && std::abs(constraint_value(row, state.X)) > near * row.scale)
+                return false;
+    return true;
+}
+
+}   // namespace
+
+Reactions ReactionResponse::under(const std::vector<double>& factors) const
+{
+    Reactions all = without;
+    for (std::size_t k = 0; k < factors.size(); ++k)
+        for (std::size_t j = 0; j < all.size(); ++j) {
+            all[j].force += factors[k] * by_unit[k][j].force;
+            all[j].torque += factors[k] * by_unit[k][j].torque;
+        }
+    return all;
+}
+
+UniqueReactions unique_reactions(const Model& model, const State& state)
+{
+    const std::vector<double> none(static_cast<std::size_t>(model.n_rows()), 0.0);
+    return least_reactions(frozen(model, {state.t}), state.X, none, most_rows(model, std::span(&state, 1)));
+}
+
 /// A mechanism under no force by reactions, or under one unit of them.
 struct SolvedMechanism {
     Model model;
@@ -49,36 +79,6 @@ struct SolvedMechanism {
         return true;
     }
 };
-
-/// But for what drives say.
-bool holds(const Model& model, const State& state)
-{
-    constexpr double near = 1e-6;   // of the scale of a row
-    for (const Joint& joint : model.joints())
-        for (const ConstraintRow& row : joint.rows)
-            if (row.drives.empty() && std::abs(constraint_value(row, state.X)) > near * row.scale)
-                return false;
-    return true;
-}
-
-}   // namespace
-
-Reactions ReactionResponse::under(const std::vector<double>& factors) const
-{
-    Reactions all = without;
-    for (std::size_t k = 0; k < factors.size(); ++k)
-        for (std::size_t j = 0; j < all.size(); ++j) {
-            all[j].force += factors[k] * by_unit[k][j].force;
-            all[j].torque += factors[k] * by_unit[k][j].torque;
-        }
-    return all;
-}
-
-UniqueReactions unique_reactions(const Model& model, const State& state)
-{
-    const std::vector<double> none(static_cast<std::size_t>(model.n_rows()), 0.0);
-    return least_reactions(frozen(model, {state.t}), state.X, none, most_rows(model, std::span(&state, 1)));
-}
 
 /// One who solves: threads have one each.
 class ReactionSolver {

@@ -39,8 +39,8 @@ constexpr double all_digits = 1e-15;     // of the iteration
 // Times the time of the motion: the longest element that would see something of what is to come, for the
 // first try, which may begin at rest.
 constexpr double seen_by = 2;
-constexpr int looked_at = 8;                              // elements that tell whether they fit between stops
-constexpr int least_first_piece = 16, least_piece = 32;   // elements that the second solution solves together
+constexpr int looked_at = 5;                              // elements that tell whether they fit between stops
+constexpr int least_first_piece = 16, least_piece = 48;   // elements that the second solution solves together
 
 const int& degree_of(const Method& method)
 {
@@ -198,8 +198,7 @@ private:
         NodalWindow window(tables_, mesh, ends_, rule_of(method_));
         if (!options_.look_at_laws) window.ignore_laws();
         ReferenceSolution second(model_, problem_, method_, options_, *window.monitor().so_far());
-        const ElementRule rule = rule_of(method_);
-        StepSizeController controller(rule.points, rule.degree, tolerance_, length_, stops_);
+        StepSizeController controller(points(), degree_of(method_), tolerance_, length_, stops_);
         controller.sample_at(samples_of(model_, span_), span_.accuracy);
         WindowOptions w = window_options(model_, options_);
         w.controller = &controller;
@@ -225,7 +224,7 @@ private:
                 return false;
             }
             if (!is_piece) return true;
-            one.is_broken_off = !second.advance(n) || is_hopeless(second);
+            one.is_broken_off = !second.advance(n, controller.take_jump()) || is_hopeless(second);
             return !one.is_broken_off;
         };
         report.notes = ends_.notes;
@@ -248,7 +247,8 @@ private:
         SolveReport& report = solution.report;
         const SolveReport& of_second = second.report();
         const bool is_wanted = !one.fits_badly && n > 0 && report.status != SolveStatus::cancelled;
-        if (is_wanted && second.reached() < n && of_second.converged() && !second.advance(n))
+        if (is_wanted && second.reached() < n && of_second.converged() &&
+            !second.advance(n, one.controller->take_jump()))
             one.is_broken_off = true;
         report.evaluations_in_all = report.evaluations + second.evaluations();
         solution.estimate_seconds = second.seconds();
@@ -278,6 +278,7 @@ private:
         return !(second.so_far().largest <= (so_far_.is_first ? 1 : hopeless) * span_.accuracy);
     }
 
+    Points points() const { return std::holds_alternative<Radau>(method_) ? Points::radau : Points::lobatto; }
     bool is_fine() const { return span_.accuracy < fine_accuracy; }
     /// Another degree may have less rounding.
     bool is_noisy() const
@@ -300,8 +301,7 @@ private:
         const double tolerance = aimed_lower * tolerance_,
                      longest = begins_unseen ? seen_by * time_of_motion(model_, ends_.start) : infinite;
         const auto length = [&](int p) {
-            const double share =
-                power(velocity_jump_of(rule_of(method_).points, p, tolerance), 1.0 / (p + 1));
+            const double share = power(velocity_jump_of(points(), p, tolerance), 1.0 / (p + 1));
             return std::min(controller.mean_length(p, tolerance), longest * share);
         };
         while (degree > lowest_degree && length(degree) > fit * controller.mean_stop()) --degree;

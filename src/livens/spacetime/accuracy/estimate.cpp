@@ -44,9 +44,11 @@ int finer_degree(int degree, double jump)
 
 /// The largest of these elements; infinite where laws of loads and drives may bend inside of one, of which J
 /// tells nothing.
-double telling_jump(const Model& model, const Motion& motion, int first, int last)
+double telling_jump(const Model& model, const Motion& motion, int first, int last,
+                    std::optional<double> known)
 {
     if (!model.loads().empty() || model.has_drives()) return std::numeric_limits<double>::infinity();
+    if (known) return *known;
     double jump = 0;
     for (const double of_element : velocity_jumps(model, motion, first, last)) raise_to(jump, of_element);
     return jump;
@@ -76,12 +78,12 @@ ReferenceSolution::ReferenceSolution(const Model& model, const Problem& problem,
         options_.max_iterations = SolveOptions{}.max_iterations;
 }
 
-bool ReferenceSolution::advance(int end)
+bool ReferenceSolution::advance(int end, std::optional<double> jump)
 {
     const int first = std::min(at_, end), last = std::max(at_, end);
     if (is_lobatto_)
         std::get<Lobatto>(method_).degree =
-            finer_degree(first_.X.degree, telling_jump(model_, first_, first, last));
+            finer_degree(first_.X.degree, telling_jump(model_, first_, first, last, jump));
     const TimeMesh mesh = mesh_between(first, last);
     const auto begin = std::chrono::steady_clock::now();
     Solution second = solve_unjudged(model_, problem_, mesh, method_, options_);

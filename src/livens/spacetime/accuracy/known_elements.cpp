@@ -29,12 +29,14 @@ KnownElements::KnownElements(const Motion& motion, const ModelTables& tables, co
     const std::size_t n = 7 * tables.bodies.size() * functions->width;
     for (AlignedDoubles* places : {&place_, &before_, &foreseen_, &other_}) places->assign(n, 0.0);
     change_.assign(static_cast<std::size_t>(tables.n_twists), 0.0);
+    spins_.resize(tables.bodies.size());
 }
 
 void KnownElements::open(int element)
 {
     const double start = motion_.mesh.ends[element], end = motion_.mesh.ends[element + 1];
-    is_behind_last_ = element > 0 && element_ == element - 1;
+    const bool goes_on = element > 0 && element_ == element - 1;
+    is_behind_last_ = goes_on;
     element_ = element;
     if (is_behind_last_) {
         std::swap(place_, before_);
@@ -50,23 +52,29 @@ void KnownElements::open(int element)
         past_.remember(before_.data(), tables_.n_bodies(), start_before_, start);
         past_.place(end - start, foreseen_.data());
     }
-    look_at_spins();
+    look_at_spins(goes_on);
 }
 
-void KnownElements::look_at_spins()
+void KnownElements::look_at_spins(bool goes_on)
 {
     turns_in_space_ = false;
     const int n_bodies = tables_.n_bodies();
     for (int b = 0; b < n_bodies; ++b) {
         const BodyTable& body = tables_.bodies[b];
         if (body.dofs == 3) continue;
-        const auto spin = [&](int end) {
-            Matrix34 X;
+        const auto spin = [&](int end) {   // triads are orthonormal to rounding
             const auto place = static_cast<std::ptrdiff_t>(motion_.X.degree * end) * motion_.X.n_values;
-            std::copy_n(motion_.X.values.data() + place + 12 * b, 12, X.a);
-            return angular_velocity(X, motion_.velocities[static_cast<std::size_t>(end * n_bodies + b)]);
+            const double *X = motion_.X.values.data() + place + 12 * b,
+                         *V = motion_.velocities[static_cast<std::size_t>(end * n_bodies + b)].a;
+            Vector3 twice{};
+            for (int c = 3; c < 12; c += 3)
+                for (int i = 0, j = 1, k = 2; i < 3; ++i, j = (j + 1) % 3, k = (k + 1) % 3)
+                    twice[i] += X[c + j] * V[c + k] - X[c + k] * V[c + j];
+            return 0.5 * twice;
         };
-        const Vector3 w = spin(element_), by = spin(element_ + 1) - w;
+        const Vector3 w = goes_on ? spins_[static_cast<std::size_t>(b)] : spin(element_),
+                      next = spin(element_ + 1), by = next - w;
+        spins_[static_cast<std::size_t>(b)] = next;
         turns_in_space_ = turns_in_space_ || norm(cross(w, by)) > sine_in_plane * norm(w) * norm(by);
         for (int i = 0; i < 3; ++i) change_[body.first + 3 + i] = by[i];
     }

@@ -31,7 +31,7 @@ public:
     bool turns_in_space() const { return turns_in_space_; }
 
 private:
-    void look_at_spins();
+    void look_at_spins(bool goes_on);
 
     const Motion& motion_;
     const ModelTables& tables_;
@@ -40,6 +40,7 @@ private:
     WindowLayout layout_;
     AlignedDoubles place_, before_, foreseen_, other_;   // and what the places before foretell of a motion
     std::vector<double> change_;
+    std::vector<Vector3> spins_;   // of bodies at the end
     double start_before_ = 0;
     int element_ = -1;
     bool is_behind_last_ = false, turns_in_space_ = false;

@@ -151,10 +151,12 @@ int Neighbour::near_impact(int end) const
     return nearest;
 }
 
-Difference Neighbour::apart_from(const State& other, int end, double share) const
+void Neighbour::apart_from(const State& other, int end, double share, Difference& apart) const
 {
-    return states_.empty() ? Difference(at_end(end), other, share)
-                           : Difference(states_[end - first_], other, share);
+    if (states_.empty())
+        apart.set(at_end(end), other, share);
+    else
+        apart.set(states_[end - first_], other, share);
 }
 
 }   // namespace livens

@@ -39,7 +39,7 @@ public:
     State at_end(int end) const;
     int near_impact(int end) const;
     /// A share of how far it is from a state there.
-    Difference apart_from(const State& other, int end, double share) const;
+    void apart_from(const State& other, int end, double share, Difference& apart) const;
 
 private:
     struct March;

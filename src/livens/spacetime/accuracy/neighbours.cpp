@@ -146,16 +146,20 @@ bool Neighbours::have_end(int end) const
 }
 
 /// `here`: the motion.
-Difference Neighbours::apart_at(const Perturbed& one, int end, const State& here) const
+void Neighbours::apart_at(const Perturbed& one, int end, const State& here, Difference& apart) const
 {
-    return has_two_ ? one.sides[0].apart_from(one.sides[1].at_end(end), end, 0.5)
-                    : one.sides[0].apart_from(here, end, 1);
+    if (has_two_)
+        one.sides[0].apart_from(one.sides[1].at_end(end), end, 0.5, apart);
+    else
+        one.sides[0].apart_from(here, end, 1, apart);
 }
 
 /// From the one between them.
-bool Neighbours::is_too_far(const Neighbour& one, int end) const
+bool Neighbours::is_too_far(const Neighbour& one, int end)
 {
-    return one.apart_from(motion().at_end(end), end, 1).size(at_.model, at_.rate) > near_.too_wide;
+    motion().at_end(end, Side::right, here_);
+    one.apart_from(here_, end, 1, apart_);
+    return apart_.size(at_.model, at_.rate) > near_.too_wide;
 }
 
 double Neighbours::left() const
@@ -263,18 +267,18 @@ int Neighbours::record(int first, int last)
     int end = first;
     for (int next = first + 1; next <= last && !wants_other_side(); ++next) {
         if (!have_end(next)) continue;
-        const State here = motion().at_end(next);
+        motion().at_end(next, Side::right, here_);
         double size = 0, grown = 0, stretched = 0;
         Growing part;
         for (Perturbed& one : all_) {
             if (one.is_lost) continue;
-            const Difference apart = apart_at(one, next, here);
-            const double width = apart.size(at_.model, at_.rate),
-                         of_one = one.so_far * apart.size_of_places(at_.model);
+            apart_at(one, next, here_, apart_);
+            const double of_places = apart_.size_of_places(at_.model),
+                         width = apart_.size(at_.model, at_.rate, of_places), of_one = one.so_far * of_places;
             raise_to(size, width);
             raise_to(stretched, one.so_far * width);
             judge_way(one, one.so_far * width);
-            if (of_one > grown && of_one > way_.largest) part = apart.most(at_.model, here.X);
+            if (of_one > grown && of_one > way_.largest) part = apart_.most(at_.model, here_.X);
             raise_to(grown, of_one);
         }
         if (size > near_.too_wide && end > first) break;
@@ -307,7 +311,8 @@ void Neighbours::bring_near(int first, int end)
         Perturbed& one = all_[i];
         if (one.is_lost) continue;
         // Near in positions alone is not near: where neighbours cross, their velocities differ most.
-        Difference apart = apart_at(one, end, here);
+        Difference apart;
+        apart_at(one, end, here, apart);
         if (roundings_ != nullptr) apart += kicked(here, rounded[i], std::sqrt(n) / one.so_far);
         const double size = apart.size(at_.model, at_.rate), share = next.small / size;
         raise_to(widest, size);

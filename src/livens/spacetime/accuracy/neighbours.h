@@ -81,8 +81,8 @@ private:
     void march(const std::function<void()>& judge);
     bool are_lost() const;
     bool have_end(int end) const;
-    Difference apart_at(const Perturbed& one, int end, const State& here) const;
-    bool is_too_far(const Neighbour& one, int end) const;
+    void apart_at(const Perturbed& one, int end, const State& here, Difference& apart) const;
+    bool is_too_far(const Neighbour& one, int end);
     double left() const;
     int solve_from(int first);
     int go_through(int first, int last);
@@ -105,6 +105,8 @@ private:
     std::vector<Perturbed> all_;
     WaySoFar way_;
     Growth grown_;
+    State here_;         // the motion at an element end
+    Difference apart_;   // from it
 };
 
 }   // namespace livens::inline spacetime_internal

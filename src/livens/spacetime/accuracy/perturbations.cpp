@@ -206,13 +206,13 @@ State beside(const Model& model, const State& state, const Kicks& kicks, double 
     return s;
 }
 
-Difference::Difference(const State& a, const State& b, double share)
+void Difference::set(const State& a, const State& b, double share)
 {
-    X.reserve(a.X.size());
-    V.reserve(a.X.size());
+    X.resize(a.X.size());
+    V.resize(a.X.size());
     for (std::size_t i = 0; i < a.X.size(); ++i) {
-        X.push_back(share * (a.X[i] - b.X[i]));
-        V.push_back(share * (a.V[i] - b.V[i]));
+        X[i] = share * (a.X[i] - b.X[i]);
+        V[i] = share * (a.V[i] - b.V[i]);
     }
 }
 
@@ -236,9 +236,9 @@ State Difference::beside(State s, double factor) const
 
 double Difference::size_of_places(const Model& model) const { return widest(model, X); }
 
-double Difference::size(const Model& model, double rate) const
+double Difference::size(const Model& model, double rate, double of_places) const
 {
-    double size = size_of_places(model);
+    double size = of_places;
     if (rate > 0) raise_to(size, widest(model, V) / rate);
     for (std::size_t b = 0; b < V.size(); ++b)   // states are velocities, by their size
         if (const double speed = model.bodies()[b].state_speed; speed > 0)

@@ -59,10 +59,13 @@ State beside(const Model& model, const State& state, const Kicks& kicks, double 
 struct Difference {
     std::vector<Matrix34> X, V;
 
-    Difference(const State& a, const State& b, double share);
+    Difference() = default;
+    Difference(const State& a, const State& b, double share) { set(a, b, share); }
+    void set(const State& a, const State& b, double share);   ///< in the memory that it has
     Difference& operator+=(const Difference& other);
     State beside(State s, double factor) const;
-    double size(const Model& model, double rate) const;
+    double size(const Model& model, double rate) const { return size(model, rate, size_of_places(model)); }
+    double size(const Model& model, double rate, double of_places) const;   ///< which is known
     double size_of_places(const Model& model) const;
     /// The body that it moves or turns most, where it is in X, and along or about what.
     Growing most(const Model& model, std::span<const Matrix34> places) const;

@@ -2,6 +2,8 @@
 // A second, finer solution that follows the first one and tells its error.
 #pragma once
 
+#include <optional>
+
 #include "livens/spacetime/solve.h"
 
 namespace livens::inline spacetime_internal {
@@ -22,8 +24,9 @@ public:
     const std::vector<SolvedEvent>& events() const { return events_; }   ///< with their errors
     double differs_from() const { return differs_from_; }                ///< s; nan: it does not
 
-    /// From where it is to an element end of the first motion. False: it failed, see report().
-    bool advance(int end);
+    /// From where it is to an element end of the first motion; `jump`: the largest velocity jump of these
+    /// elements, where it is known. False: it failed, see report().
+    bool advance(int end, std::optional<double> jump = {});
     int reached() const { return at_; }   ///< element end
     const ErrorEstimate& so_far() const { return meter_.so_far(); }
     const SolveReport& report() const { return report_; }   ///< of what was solved last

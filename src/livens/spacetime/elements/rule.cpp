@@ -133,7 +133,7 @@ ElementRule make_rule(Points points, int degree)
 
 /// Made once, for a second solution asks for it with every piece. (They stay: what ends with its thread asks
 /// for memory at its first use, without which the C library ends the program.)
-ElementRule element_rule(Points points, int degree)
+const ElementRule& element_rule(Points points, int degree)
 {
     check_degree(points, degree, true);
     static std::mutex in_use;
@@ -152,7 +152,7 @@ void check_degree(const Method& method, bool is_second)
         check_degree(Points::lobatto, std::get<Lobatto>(method).degree, is_second);
 }
 
-ElementRule rule_of(const Method& method)
+const ElementRule& rule_of(const Method& method)
 {
     if (const auto* radau = std::get_if<Radau>(&method)) return element_rule(Points::radau, radau->degree);
     return element_rule(Points::lobatto, std::get<Lobatto>(method).degree);

@@ -28,13 +28,13 @@ struct ElementRule {
 };
 
 /// Throws InputError unless 1 <= degree <= 18 (lobatto) or 9 (radau); 17, 18 and 9 are for the estimates of
-/// errors alone.
-ElementRule element_rule(Points points, int degree);
+/// errors alone. They stay as long as the program.
+const ElementRule& element_rule(Points points, int degree);
 /// Throws InputError for a degree out of range, and std::bad_variant_access for a method that is not nodal.
-ElementRule rule_of(const Method& method);
+const ElementRule& rule_of(const Method& method);
 /// Throws what rule_of() throws, unless `is_second` beyond 16 (lobatto) or 8 (radau), too.
 void check_degree(const Method& method, bool is_second);
-inline ElementRule lobatto_rule(int degree) { return element_rule(Points::lobatto, degree); }
+inline const ElementRule& lobatto_rule(int degree) { return element_rule(Points::lobatto, degree); }
 
 /// The node of row A, A < p: that one, or with radau the one behind it.
 inline int node_of_row(const ElementRule& rule, int A) { return A + (rule.points == Points::radau ? 1 : 0); }

@@ -119,6 +119,7 @@ void StepSizeController::accepted(double length, double jump, int steps, bool ha
     const double ease = steps > most_steps ? std::clamp(far_too_many / steps, least_ease, 1.0) : grow;
     const double most = std::max(ease * length, tried);
     const bool is_rounding = jump < 100 * least_jump;
+    seen_.jump = std::max(seen_.jump, jump);
     blind_.second *= regain;
     blind_.first *= blind_.second;
     const double trend = is_rounding ? 1 : trend_to(length * power(jump, -1.0 / (degree_ + 1)));
@@ -133,11 +134,11 @@ void StepSizeController::accepted(double length, double jump, int steps, bool ha
         length_ = last_refused_.second;
         held_back_ = 1;
     }
-    if (is_rounding && tells_length_) return;
-    if (!is_rounding && !tells_length_) sum_of_scales_ = n_accepted_ = 0;
-    tells_length_ = !is_rounding;
-    sum_of_scales_ += logarithm(length) - logarithm(std::max(jump, least_jump)) / (degree_ + 1);
-    ++n_accepted_;
+    if (is_rounding && seen_.tells_length) return;
+    if (!is_rounding && !seen_.tells_length) seen_.sum_of_scales = seen_.n_accepted = 0;
+    seen_.tells_length = !is_rounding;
+    seen_.sum_of_scales += logarithm(length) - logarithm(std::max(jump, least_jump)) / (degree_ + 1);
+    ++seen_.n_accepted;
 }
 
 void StepSizeController::too_dear(double length)
@@ -171,14 +172,14 @@ bool StepSizeController::ascends() const
 
 double StepSizeController::mean_length(int degree, double tolerance) const
 {
-    if (n_accepted_ == 0) return 0;
-    const double scale = exponential(sum_of_scales_ / n_accepted_);
+    if (seen_.n_accepted == 0) return 0;
+    const double scale = exponential(seen_.sum_of_scales / seen_.n_accepted);
     return safety * scale * power(velocity_jump_of(points_, degree, tolerance), 1.0 / (degree + 1));
 }
 
 double StepSizeController::lost(const TimeMesh& mesh) const
 {
-    if (!tells_length_) return 1;
+    if (!seen_.tells_length) return 1;
     double sum = 0;
     for (int e = 0; e < mesh.n_elements(); ++e) sum += logarithm(mesh.length(e));
     const double length = exponential(sum / mesh.n_elements());

@@ -15,6 +15,14 @@ namespace livens::inline spacetime_internal {
 /// The velocity jump of an element that loses `error`: local_error() the other way round.
 double velocity_jump_of(Points points, int degree, double error);
 
+/// What accepted elements told.
+struct AcceptedElementsTold {
+    double sum_of_scales = 0;   // of log(h J^(-1 / (p + 1))): lengths at which elements see nothing
+    int n_accepted = 0;
+    bool tells_length = false;   // by some jump above rounding; else a sum of lower bounds
+    double jump = 0;             // the largest, since it was asked for
+};
+
 /// Says where the next element ends, and hears how the last one went.
 class StepSizeController {
 public:
@@ -42,6 +50,8 @@ public:
     void accepted(double length, double jump, int steps, bool has_factor = false);
     /// How many times as long the next element might be if the last one had taken fewer steps.
     double held_back() const { return held_back_; }
+    /// The largest jump of elements that were accepted since it was last taken.
+    double take_jump() { return std::exchange(seen_.jump, 0); }
     /// What such an element took costs more than shorter ones do: these go on for a while.
     void too_dear(double length);
     /// The next element is as long as this, if no stop is nearer.
@@ -59,7 +69,7 @@ public:
     double mean_length() const { return mean_length(degree_, tolerance_); }
     double mean_length(int degree, double tolerance) const;
     /// By some jump above rounding, not lower bounds alone.
-    bool tells_length() const { return tells_length_; }
+    bool tells_length() const { return seen_.tells_length; }
     /// Of the time between stops.
     double mean_stop() const;
     /// What elements of this mesh, which it made, have lost as a rule, in tolerances, where something else
@@ -81,9 +91,7 @@ private:
     std::pair<double, double> last_refused_{0, 0};
     // h J^(-1 / (p + 1)) of the last two elements, at which they would see nothing; infinite: none.
     double scales_[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-    double sum_of_scales_ = 0;   // of log(h J^(-1 / (p + 1))): lengths at which elements see nothing
-    int n_accepted_ = 0;
-    bool tells_length_ = false;   // by some jump above rounding; else a sum of lower bounds
+    AcceptedElementsTold seen_;
 };
 
 }   // namespace livens::inline spacetime_internal

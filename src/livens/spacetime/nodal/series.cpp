@@ -19,6 +19,7 @@ namespace {
 /// Where the series at the start may be off by more than this (of the model's length, or rad), a solution of
 /// half the degree makes a guess that saves more iterations than it costs (measured on P16, degrees 4 to 16).
 constexpr double trusted_guess = 1e-3;
+constexpr int least_halved = 4;   // degree
 
 /// Lengths of the model that the series may add to a steady flight before it is not believed.
 constexpr double far_away = 0.5;
@@ -35,16 +36,17 @@ long long Series::evaluations() const
     return coarse_ ? coarse_->evaluations() + coarse_series_->evaluations() : 0;
 }
 
-Series::Series(const ModelTables& tables, const ElementRule& rule) : tables_(tables)
+Series::Series(const ModelTables& tables, const ElementRule& rule) : tables_(tables), rule_(rule) {}
+
+void Series::make_coarse()
 {
-    if (rule.degree < 4) return;
-    const ElementRule half = element_rule(rule.points, rule.degree / 2);
-    coarse_ = std::make_unique<NodalSystem>(tables, half);
-    coarse_series_ = std::make_unique<Series>(tables, half);
+    const ElementRule& half = element_rule(rule_.points, rule_.degree / 2);
+    coarse_ = std::make_unique<NodalSystem>(tables_, half);
+    coarse_series_ = std::make_unique<Series>(tables_, half);
     const LagrangeBasis basis(half.nodes);
-    to_fine_.assign(static_cast<std::size_t>(rule.size() * basis.size()), 0.0);
-    for (int A = 0; A < rule.size(); ++A)
-        basis.values(rule.nodes[A],
+    to_fine_.assign(static_cast<std::size_t>(rule_.size() * basis.size()), 0.0);
+    for (int A = 0; A < rule_.size(); ++A)
+        basis.values(rule_.nodes[A],
                      {to_fine_.data() + A * basis.size(), static_cast<std::size_t>(basis.size())});
 }
 
@@ -150,8 +152,9 @@ bool Series::place_coarse(NodalSystem& system, const InstantState& start)
 void Series::place(NodalSystem& system, const InstantState& start)
 {
     predict(system, start);
-    if (coarse_ && error(start, system.layout().h(0)) > trusted_guess && !place_coarse(system, start))
-        predict(system, start);
+    if (rule_.degree < least_halved || !(error(start, system.layout().h(0)) > trusted_guess)) return;
+    if (!coarse_) make_coarse();
+    if (!place_coarse(system, start)) predict(system, start);
 }
 
 }   // namespace livens

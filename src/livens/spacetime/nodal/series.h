@@ -52,10 +52,12 @@ public:
 private:
     void predict(NodalSystem& system, const InstantState& start) const;
     double error(const InstantState& start, double h) const;
+    void make_coarse();
     bool place_coarse(NodalSystem& system, const InstantState& start);
 
     const ModelTables& tables_;
-    std::unique_ptr<NodalSystem> coarse_;   // half the degree
+    const ElementRule& rule_;
+    std::unique_ptr<NodalSystem> coarse_;   // half the degree; null until it is needed
     std::unique_ptr<Series> coarse_series_;
     std::vector<double> to_fine_;   // values of its basis at the nodes here, node after node
     Newton newton_;
