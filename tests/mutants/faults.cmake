@@ -1104,7 +1104,7 @@ livens_mutant(NAME what_a_child_bears_is_not_its_parents
 # Forces along a joint do not load its parent where that moves.
 livens_mutant(NAME forces_along_joints_spare_parents
               FILE spacetime/nodal/kernel/tree_forces.cpp
-              OLD [[for (const Force& force : forces_) add_outer(force.on_parent, force.by_parent, J);]]
+              OLD [[for (const ForceAlongTree& force : forces_) add_outer(force.on_parent, force.by_parent, J);]]
               NEW [[;]]
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.StiffLoadsAreSolvedWithTheirSlopes)

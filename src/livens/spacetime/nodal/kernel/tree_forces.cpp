@@ -64,7 +64,7 @@ void TreeForces::find(const WindowLayout& layout, const RowPattern& pattern, con
 void TreeForces::put(const TreePlan& plan, TreeBlocks& blocks)
 {
     between_.resize(static_cast<std::size_t>(blocks.n_bodies()));
-    for (Between& between : between_) {
+    for (BetweenBodies& between : between_) {
         std::ranges::fill(between.by_parent, 0.0);
         std::ranges::fill(between.of_parent, 0.0);
         between.products.clear();
@@ -133,14 +133,14 @@ int TreeForces::held_body(const SlopesOfProduct& product, const TreePlan& plan) 
     return world;
 }
 
-TreeForces::Force TreeForces::reduced(const SlopesOfProduct& product) const
+ForceAlongTree TreeForces::reduced(const SlopesOfProduct& product) const
 {
     const int p = rule_.degree, f = motion_->f;
     const int n = parent_ != world ? tables_.bodies[parent_].dofs : 0;
     const auto zeros = [](int rows, int columns) {
         return Numbers(static_cast<std::size_t>(rows * columns), 0.0);
     };
-    Force force{zeros(f, p), zeros(n, p), zeros(p, f * p), zeros(p, n * p)};
+    ForceAlongTree force{zeros(f, p), zeros(n, p), zeros(p, f * p), zeros(p, n * p)};
     for (std::size_t r = 0; r < 2; ++r) {
         const SlopesOfProduct::Twist& u = product.direction[r];
         if (product.to[r] == body_) {
@@ -202,9 +202,9 @@ void TreeForces::add_to_parent(TreeBlocks& blocks) const
 {
     const int p = rule_.degree, n = blocks.size(parent_), d = blocks.size(body_);
     Numbers &J = blocks.of(parent_, parent_), &C = blocks.of(body_, parent_);
-    for (const Force& force : forces_) add_outer(force.on_parent, force.by_parent, J);
+    for (const ForceAlongTree& force : forces_) add_outer(force.on_parent, force.by_parent, J);
     if (of_joints_ == nullptr) return;
-    const Between& between = between_[static_cast<std::size_t>(body_)];
+    const BetweenBodies& between = between_[static_cast<std::size_t>(body_)];
     for (int i = 0; i < d; ++i)
         for (int j = 0; j < n; ++j)
             for (int l = 0; l < p; ++l)
@@ -214,21 +214,21 @@ void TreeForces::add_to_parent(TreeBlocks& blocks) const
 
 void TreeForces::add_to_own(Numbers& D) const
 {
-    for (const Force& force : forces_) add_outer(force.on_own, force.by_own, D);
+    for (const ForceAlongTree& force : forces_) add_outer(force.on_own, force.by_own, D);
 }
 
 void TreeForces::add_by_own(Numbers& E) const
 {
-    for (const Force& force : forces_) add_outer(force.on_parent, force.by_own, E);
+    for (const ForceAlongTree& force : forces_) add_outer(force.on_parent, force.by_own, E);
     if (of_joints_ == nullptr) return;
-    const Between& between = between_[static_cast<std::size_t>(body_)];
+    const BetweenBodies& between = between_[static_cast<std::size_t>(body_)];
     add_at_nodes(between.of_parent, motion_->z_columns, tables_.bodies[parent_].dofs,
                  tables_.bodies[body_].dofs, weights_, E);
 }
 
 void TreeForces::add_by_parent(Numbers& W) const
 {
-    for (const Force& force : forces_) add_outer(force.on_own, force.by_parent, W);
+    for (const ForceAlongTree& force : forces_) add_outer(force.on_own, force.by_parent, W);
 }
 
 }   // namespace livens

@@ -9,6 +9,17 @@
 
 namespace livens::inline spacetime_internal {
 
+/// Slopes of what a body's joint bears in the middle, by its parent and of its parent, 6 x 6 row by row.
+struct BetweenBodies {
+    double by_parent[36] = {}, of_parent[36] = {};
+    std::vector<const SlopesOfProduct*> products{};
+};
+
+/// A force along coordinates, by freedoms: its directions (i; A) at row nodes, and slopes (A; j, B).
+struct ForceAlongTree {
+    Numbers on_own, on_parent, by_own, by_parent;
+};
+
 /// What is between a body and its parent alone stays apart until that body is eliminated: of the freedoms
 /// that are left then it makes little, and whole blocks are spared.
 class TreeForces {
@@ -34,20 +45,10 @@ public:
     void add_by_parent(Numbers& W) const;
 
 private:
-    /// Slopes of what a body's joint bears in the middle, by its parent and of its parent, 6 x 6 row by row.
-    struct Between {
-        double by_parent[36] = {}, of_parent[36] = {};
-        std::vector<const SlopesOfProduct*> products{};
-    };
-    /// A force along coordinates, by freedoms: its directions (i; A) at row nodes, and slopes (A; j, B).
-    struct Force {
-        Numbers on_own, on_parent, by_own, by_parent;
-    };
-
     void put_pair(const SlopesOfPair& pair, TreeBlocks& blocks) const;
     void put_of_joint(const SlopesOfPair& pair, const TreePlan& plan, TreeBlocks& blocks);
     int held_body(const SlopesOfProduct& product, const TreePlan& plan) const;
-    Force reduced(const SlopesOfProduct& product) const;
+    ForceAlongTree reduced(const SlopesOfProduct& product) const;
     void add_outer(const Numbers& on, const Numbers& by, Numbers& to) const;
 
     const ModelTables& tables_;
@@ -56,10 +57,10 @@ private:
     const std::vector<SlopesOfPair>* of_joints_ = nullptr;   // null: they do not count
     Numbers weights_;   // of nodes, in those of the one where joints were asked
     double h_ = 0;
-    std::vector<Between> between_;   // of each body
+    std::vector<BetweenBodies> between_;   // of each body
     int body_ = 0, parent_ = 0;
     const JointMotion* motion_ = nullptr;
-    std::vector<Force> forces_;
+    std::vector<ForceAlongTree> forces_;
 };
 
 }   // namespace livens::inline spacetime_internal
