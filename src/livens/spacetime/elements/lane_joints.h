@@ -129,8 +129,8 @@ struct JointAtNodes {
 };
 
 /// The last of these lanes may go over some that others have had.
-bool move_joint(const double* own, const double* above, const JointSize& of, double least, double* z,
-                double* T)
+[[maybe_unused]] bool move_joint(const double* own, const double* above, const JointSize& of, double least,
+                                 double* z, double* T)
 {
     constexpr int W = part;
     if (of.p < W) return false;
