@@ -184,7 +184,7 @@ const lanes::Values& MarchKernel::first_row()
 bool MarchKernel::propose(const WindowLayout& layout, Steps kind)
 {
     const lanes::Pattern& pattern = pattern_->view();
-    if (kind == Steps::by_tangent) {
+    if (has_slopes(kind)) {
         if (!choice_.is_kept()) {
             functions_->interpolate(pattern, start_->values(), nodes_.values(), lane_rule_.in_lanes());
             const bool is_good = choice_.tangent().factorise(layout, *start_, nodes_.values());
@@ -211,8 +211,8 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
     const int most = is_accelerated ? most_combinations : std::min(few, options.max_iterations);
     lanes::Sizes sizes;
     Shrinking progress{std::min(options.tolerance, widest_tolerance), follows};
-    progress.has_slopes = kind == Steps::by_tangent;
-    progress.has_dear_factor = progress.has_slopes && !choice_.tangent().is_reduced();
+    progress.has_slopes = has_slopes(kind);
+    progress.has_dear_factor = kind == Steps::by_tangent && !choice_.tangent().is_reduced();
     if (is_accelerated) acceleration_.begin(static_cast<std::size_t>(pattern.n_twists * functions_->width));
     double moved = 0, pivot = 0;   // since the factor was made, lengths and radians; its own, squared
     for (int steps = 0;; ++steps) {
@@ -231,7 +231,7 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
         if (progress.is_done) break;
         if (steps == most) return false;
         if (!propose(layout, kind)) return false;
-        if (kind == Steps::by_tangent) progress.know_terms(sizes.terms, choice_.tangent().slopes());
+        if (progress.has_slopes) progress.know_terms(sizes.terms, choice_.tangent().slopes());
         const double left = is_accelerated ? size_of_proposal() : 0;
         if (is_accelerated) acceleration_.apply(nodes.step);
         functions_->move(pattern, nodes, lane_rule_.in_lanes(), sizes);
@@ -246,11 +246,11 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
         if (!goes_on) return false;
         const bool is_slow =
             !progress.is_done && progress.contraction > slow_contraction && !progress.is_first_mended();
-        if (kind == Steps::by_tangent && is_slow) choice_.forget_factor();   // rounding says nothing of it
+        if (progress.has_slopes && is_slow) choice_.forget_factor();   // rounding says nothing of it
     }
     has_near_factor_ = moved <= fits_for_next * pivot;
     report = progress.report(sizes, start.momentum);
-    report.took_slopes = kind == Steps::by_tangent;
+    report.took_slopes = progress.has_slopes;
     report.slope_factors = choice_.n_factors();
     return std::min(pivot, from.pivots[0]) > least_pivot * least_pivot;   // false: also no number
 }
@@ -276,18 +276,21 @@ bool MarchKernel::solve(const WindowLayout& layout, const InstantState& start, c
     };
     const auto tries = [&](Steps kind) {
         is_solved_ = iterates(kind);
-        choice_.took(is_solved_ ? report.iterations : most_kernel_steps, is_solved_,
-                     kind == Steps::by_tangent);
-        const bool is_by_tangent = is_solved_ && kind == Steps::by_tangent;
+        choice_.took(is_solved_ ? report.iterations : most_kernel_steps, is_solved_, has_slopes(kind));
+        const bool is_by_tangent = is_solved_ && has_slopes(kind);
         report.is_dearer_than_short = is_by_tangent && choice_.is_dearer_than_short(report.slope_factors);
-        report.has_dear_factor = is_solved_ && kind == Steps::by_tangent && choice_.is_dear();
+        report.has_dear_factor = is_by_tangent && choice_.is_dear();
         return is_solved_;
     };
     const bool was_kept = choice_.is_kept(), was_slow = choice_.last_steps() > most_kernel_steps;
-    bool is_done =
-        choice_.by_tangent() && (tries(Steps::by_tangent) || (was_kept && tries(Steps::by_tangent)));
+    const auto by_slopes = [&](bool is_worth_another) {
+        if (tries(Steps::by_tangent)) return true;
+        const bool was_spared = !choice_.tangent().is_reduced();
+        return (was_spared || is_worth_another) && tries(Steps::by_new_tangents);
+    };
+    bool is_done = choice_.by_tangent() && by_slopes(was_kept);
     if (!is_done && !choice_.by_tangent() && !(is_large && was_slow))
-        is_done = tries(Steps::free) || tries(Steps::by_tangent);
+        is_done = tries(Steps::free) || by_slopes(false);
     if (is_large && !is_done) {
         is_solved_ = iterate(layout, start, options, Steps::combined, report);
         choice_.took(is_solved_ ? report.iterations : most_kernel_steps, is_solved_, false);

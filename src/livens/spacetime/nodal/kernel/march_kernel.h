@@ -77,7 +77,9 @@ private:
 
     void use(const InstantState& start);
     void evaluate_loads(const WindowLayout& layout);
-    enum class Steps { free, by_tangent, combined };
+    /// The third: with a new factor wherever one is slow, though it costs as much as many steps.
+    enum class Steps { free, by_tangent, by_new_tangents, combined };
+    static bool has_slopes(Steps kind) { return kind == Steps::by_tangent || kind == Steps::by_new_tangents; }
     bool iterate(const WindowLayout& layout, const InstantState& start, const NewtonOptions& options,
                  Steps kind, NewtonReport& report);
     /// Numbers, gradients and factor of the row in lane 0.
