@@ -199,7 +199,7 @@ private:
 TEST(Horizon, RoundingsOnTheWayAreTold)
 {
     int n_refused = 0;
-    for (const double tilt : {0.001, 0.0017, 0.004})
+    for (const double tilt : {0.0008, 0.001, 0.0012, 0.0014, 0.0017, 0.002, 0.0025, 0.003, 0.004, 0.005, 0.007})
         for (const double accuracy : {1e-5, 3e-6, 1e-6, 1e-7, 3e-8}) {
             const Vector3 inertia{1, 2, 3}, spin{tilt, 6, 0};
             Model model;
