@@ -14,6 +14,7 @@
 #include "livens/diagnostics/acceptance.h"
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
+#include "livens/solvers/crew.h"
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/nodal/window.h"
@@ -167,39 +168,40 @@ double missing(const Model& model, const Guess& motion, const State& known, Know
 
 }   // namespace
 
-std::vector<GuessFromEnds> guesses_from_ends(const Model& model, const Ends& ends, const GuessMesh& mesh)
+std::vector<GuessFromEnds> guesses_from_ends(const Model& model, const Ends& ends, const GuessMesh& mesh,
+                                             int turn)
 {
-    struct Candidate {
-        GuessFromEnds guess;
-        bool is_at_rest = false;
-        double off = 0;
-    };
-    std::vector<Candidate> found;
     const bool has_places = knows_positions(ends.at_start) && knows_positions(ends.at_end);
     const bool is_start_first = knows_positions(ends.at_start) || !knows_positions(ends.at_end);
-    for (const bool from_start : {is_start_first, !is_start_first}) {
-        const State &near = from_start ? ends.start : ends.end, &far = from_start ? ends.end : ends.start;
-        const Known given = from_start ? ends.at_end : ends.at_start;
+    const auto near_of = [&](bool from_start) -> const State& { return from_start ? ends.start : ends.end; };
+    std::vector<bool> from_starts;
+    for (const bool from_start : {is_start_first, !is_start_first})
         // Between places stated rates choose the way, for instance how many turns; without them the shortest.
-        if (has_places && !is_moving(near)) continue;
-        std::vector<State> begins{near};
-        // let go at rest, or with the rates of the far end
-        if (!is_moving(near) && is_moving(far)) begins.push_back(with_rates(near, far));
-        const auto first = static_cast<std::ptrdiff_t>(found.size());
-        for (const State& begin : begins) {
-            const Guess march = march_from(model, begin, mesh, from_start);
-            const bool is_bent = knows_positions(given);
-            found.push_back({{is_bent ? bent(march, near.t, far) : march, from_start},
-                             !is_moving(near),
-                             missing(model, march, far, given)});
-        }
-        std::stable_sort(found.begin() + first, found.end(),
-                         [](const Candidate& a, const Candidate& b) { return a.off < b.off; });
-    }
-    std::ranges::stable_sort(found, {}, &Candidate::is_at_rest);
+        if (!has_places || is_moving(near_of(from_start))) from_starts.push_back(from_start);
+    if (from_starts.empty() && turn == 0) return {{guess_between(ends.start, ends.end), true}};
+    if (turn >= std::ssize(from_starts)) return {};
+    if (!is_moving(near_of(from_starts.front())) && is_moving(near_of(from_starts.back())))
+        std::ranges::reverse(from_starts);
+
+    const bool from_start = from_starts[turn];
+    const State &near = near_of(from_start), &far = near_of(!from_start);
+    const Known given = from_start ? ends.at_end : ends.at_start;
+    std::vector<State> begins{near};
+    // let go at rest, or with the rates of the far end
+    if (!is_moving(near) && is_moving(far)) begins.push_back(with_rates(near, far));
+    struct Candidate {
+        GuessFromEnds guess;
+        double off = 0;
+    };
+    std::vector<Candidate> found(begins.size());
+    for_each_item(static_cast<int>(begins.size()), 1, [&](int i) {
+        const Guess march = march_from(model, begins[i], mesh, from_start);
+        found[i] = {{knows_positions(given) ? bent(march, near.t, far) : march, from_start},
+                    missing(model, march, far, given)};
+    });
+    std::ranges::stable_sort(found, {}, &Candidate::off);
     std::vector<GuessFromEnds> guesses;
     for (const Candidate& candidate : found) guesses.push_back(candidate.guess);
-    if (guesses.empty()) guesses.push_back({guess_between(ends.start, ends.end), true});
     return guesses;
 }
 
@@ -222,11 +224,11 @@ std::vector<GuessFromEnds> nearest_marches(const Model& model, const Ends& ends,
         for (Matrix34& V : begin.V) V = factor * V;
         return march_from(model, begin, mesh, from_start);
     };
-    std::vector<Arrival> all;
-    for (int i = 0; i <= n; ++i) {
+    std::vector<Arrival> all(n + 1);
+    for_each_item(n + 1, 1, [&](int i) {
         const double factor = smallest * std::pow(largest / smallest, static_cast<double>(i) / n);
-        all.push_back({factor, missing(model, march_with(factor), far, given)});
-    }
+        all[i] = {factor, missing(model, march_with(factor), far, given)};
+    });
     std::vector<Arrival> nearest;   // nearer than those beside them
     for (std::size_t i = 0; i < all.size(); ++i) {
         const bool is_least =

@@ -43,9 +43,11 @@ struct GuessFromEnds {
     int next = 0;          ///< attempt after that
 };
 /// From what is known, with what is stated beside it as a guess: a march from each end where that is enough,
-/// bent steadily onto positions that are known at the other end; momenta are met as a march has them. From
-/// ends that move first, those that miss least before others; between places without rates, steady motions.
-std::vector<GuessFromEnds> guesses_from_ends(const Model& model, const Ends& ends, const GuessMesh& mesh);
+/// bent steadily onto positions that are known at the other end; momenta are met as a march has them. Between
+/// places without rates, steady motions. `turn` 0 and 1: of the ends, that which moves first; those of an end
+/// that miss least before others. Empty behind the last turn.
+std::vector<GuessFromEnds> guesses_from_ends(const Model& model, const Ends& ends, const GuessMesh& mesh,
+                                             int turn);
 
 /// Marches that conditions at the other end may be led from: with the rates that are stated, with those of
 /// steady motions between the ends, and with others. Null behind the last one.

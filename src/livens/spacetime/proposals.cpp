@@ -57,10 +57,10 @@ Guess Proposals::between_ends()
     const int attempt = n_plain_++;
     if (attempt == 0 && problem_.guess) return problem_.guess;
     if (problem_.is_only_guess) return {};
-    if (plain_.empty()) {
-        plain_ = guesses_from_ends(model_, guessed_ends(), guess_mesh());
-        if (problem_.guess) plain_.insert(plain_.begin(), GuessFromEnds{});   // tried before
-    }
+    if (plain_.empty() && problem_.guess) plain_.push_back({});   // tried before
+    if (attempt == static_cast<int>(plain_.size()))
+        for (GuessFromEnds& one : guesses_from_ends(model_, guessed_ends(), guess_mesh(), turn_++))
+            plain_.push_back(std::move(one));
     const int n_plain = static_cast<int>(plain_.size());
     if (attempt < n_plain) return plain_[attempt].motion;
     if (!nearest_) nearest_ = nearest_marches(model_, guessed_ends(), guess_mesh());

@@ -42,9 +42,10 @@ private:
     const Window& window_;
     PlannedPhases* phases_;         // or null
     std::optional<Ends> guessed_;   // of conditions by component
-    std::vector<GuessFromEnds> plain_;
+    std::vector<GuessFromEnds> plain_;   // of the turns that were needed so far
     std::optional<std::vector<GuessFromEnds>> nearest_;   // made where plain ones fail
-    int n_plain_ = 0, lead_ = 0, n_curves_ = 0;   // guesses, marches that were led, and curves, so far
+    int turn_ = 0, n_plain_ = 0;      // turns and guesses so far
+    int lead_ = 0, n_curves_ = 0;     // marches that were led, and curves
     std::string told_;
 };
 

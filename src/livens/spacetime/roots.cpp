@@ -188,7 +188,7 @@ Solution with_roots(const Model& model, const Problem& problem, const Time& time
         other.start = start;
         Problem one = problem;
         one.is_only_guess = true;
-        one.guess = guesses_from_ends(model, other, {mesh.ends}).front().motion;
+        one.guess = guesses_from_ends(model, other, {mesh.ends}, 0).front().motion;
         Solution found = solve_unjudged(model, one, time, method, alone);
         if (found.report.status == SolveStatus::cancelled) break;
         search.take(std::move(found));

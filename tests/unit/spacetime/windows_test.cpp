@@ -400,9 +400,9 @@ TEST(Guess, FromBothEndsMeetsWhatIsKnown)
     ends.end = march(0.3);
     ends.end.t = 0.3;
     for (Matrix34& V : ends.end.V) V = {};
-    const Guess still = guesses_from_ends(model, ends, {times})[0].motion;
+    const Guess still = guesses_from_ends(model, ends, {times}, 0)[0].motion;
     ends.start.V[1] = rate(ends.start.X[1], {0, 0, 0}, {0.1, 0, 0});
-    const Guess moving = guesses_from_ends(model, ends, {times})[0].motion;
+    const Guess moving = guesses_from_ends(model, ends, {times}, 0)[0].motion;
     for (const Guess& guess : {still, moving})
         for (int b = 0; b < model.n_bodies(); ++b) EXPECT_LT(norm(guess(0.3).X[b] - ends.end.X[b]), 1e-12);
     EXPECT_LT(norm(moving(0.15).X[0] - march(0.15).X[0]), norm(still(0.15).X[0] - march(0.15).X[0]));
