@@ -234,18 +234,19 @@ Outcome ChainSolver::condense_all()
     });
     const auto are_all_good = [&] { return std::ranges::all_of(is_good, [](char is) { return is != 0; }); };
     if (!std::isfinite(largest(matrix_.closing())) || !are_all_good()) return Outcome::not_finite;
-    for_each_item(n_links(), least_shared_links, [&](int e) {
-        Patience::ask();
-        is_good[e] = condense(links_[e], e);
-    });
-    for (int e = 0; e < n_links(); ++e) {
-        Patience::ask();
-        const Link& link = links_[e];
-        if (is_good[e] && (e == 0 || merge(e))) continue;
-        if (!is_good[e]) singular_node_ = link.failed < 0 ? link.first : node_inside(link, link.failed);
-        return Outcome::singular;
-    }
-    return Outcome::regular;
+    const bool is_regular = in_order_behind(
+        n_links(), least_shared_links,
+        [&](int e) {
+            Patience::ask();
+            is_good[e] = condense(links_[e], e);
+        },
+        [&](int e) {
+            Patience::ask();
+            if (is_good[e]) return e == 0 || merge(e);
+            singular_node_ = links_[e].failed < 0 ? links_[e].first : node_inside(links_[e], links_[e].failed);
+            return false;
+        });
+    return is_regular ? Outcome::regular : Outcome::singular;
 }
 
 Outcome ChainSolver::close()

@@ -60,15 +60,24 @@ void ChainSolver::subtract_product(const double* x, double* y, bool is_transpose
         return values + n;
     };
     const int behind = first_unknown_.empty() ? 0 : first_unknown_.back();
-    for (int e = 0; e < n_links(); ++e) {
+    const auto take_rows = [&](int e, int begin, int end) {
         const Link& link = links_[static_cast<std::size_t>(e)];
-        const double *value = matrix_.storage(e).data(), *seen = matrix_.border_storage(e).data();
         const int n = matrix_.n_columns(e), i0 = row(link.first), j0 = unknown(link.first);
-        for (int i = 0; i < matrix_.n_rows(e); ++i) {
+        const double* value = matrix_.storage(e).data() + static_cast<std::ptrdiff_t>(begin) * n;
+        const double* seen = matrix_.border_storage(e).data() + static_cast<std::ptrdiff_t>(begin) * border();
+        for (int i = begin; i < end; ++i) {
             value = take(i0 + i, j0, value, n);
             seen = take(i0 + i, behind, seen, border());
         }
-    }
+    };
+    const auto far_rows = [&](int e) { return matrix_.n_rows(e) - links_[static_cast<std::size_t>(e)].r_far; };
+    if (is_transposed)
+        for (int e = 0; e < n_links(); ++e) take_rows(e, 0, matrix_.n_rows(e));
+    else   // each all of its rows, in the order of elements, that nobody waits for another
+        for_each_item(n_links(), least_shared_links, [&](int e) {
+            if (e > 0) take_rows(e - 1, far_rows(e - 1), matrix_.n_rows(e - 1));
+            take_rows(e, 0, e + 1 < n_links() ? far_rows(e) : matrix_.n_rows(e));
+        });
     if (n_links() == 0) return;
     const int first = structure_->n_unknowns.front(), last = structure_->n_unknowns.back();
     const double* value = matrix_.closing().data();
@@ -78,42 +87,39 @@ void ChainSolver::subtract_product(const double* x, double* y, bool is_transpose
     }
 }
 
-/// Right-hand sides of all elements: what their own unknowns have of them, and what is left.
-void ChainSolver::eliminate_inside(const double* x) const
+/// Right-hand side of an element: what its own unknowns have of it, and what is left.
+void ChainSolver::eliminate_inside(const Link& link, const double* x) const
 {
-    in_shares(n_links(), least_shared_links, [&](int, int begin, int end) {
-        Values rows;
-        for (int e = begin; e < end; ++e) {
-            const Link& link = links_[static_cast<std::size_t>(e)];
-            const bool is_last = e + 1 == n_links();
-            const double* from = x + row(link.first);
-            rows.assign(static_cast<std::size_t>(link.inside.n_rows()), 0.0);
-            std::copy_n(from + link.r_near, link.r_own, rows.begin());
-            std::copy_n(from, link.r_near, rows.begin() + link.r_own);
-            // a balance that two elements share is on the right of the later one
-            if (is_last) std::copy_n(from + link.r_near + link.r_own, link.r_far, rows.end() - link.r_far);
-            link.inside.apply(rows.data());
-            std::copy_n(rows.begin(), link.n_own, link.inside_values.begin());
-            std::copy(rows.begin() + link.n_own, rows.end(), link.left_values.begin());
-        }
-    });
+    const double* from = x + row(link.first);
+    Values rows(static_cast<std::size_t>(link.inside.n_rows()), 0.0);
+    std::copy_n(from + link.r_near, link.r_own, rows.begin());
+    std::copy_n(from, link.r_near, rows.begin() + link.r_own);
+    // a balance that two elements share is on the right of the later one
+    if (&link == &links_.back())
+        std::copy_n(from + link.r_near + link.r_own, link.r_far, rows.end() - link.r_far);
+    link.inside.apply(rows.data());
+    std::copy_n(rows.begin(), link.n_own, link.inside_values.begin());
+    std::copy(rows.begin() + link.n_own, rows.end(), link.left_values.begin());
 }
 
 /// x, by rows, <- A^-1 x, by unknowns.
 void ChainSolver::apply_inverse(double* x) const
 {
     if (n_links() == 0) return;
-    eliminate_inside(x);
     work_.front.clear();
-    for (int e = 0; e < n_links(); ++e) {
+    const auto take_in = [&](int e) {
         const Link& link = links_[static_cast<std::size_t>(e)];
         work_.front.insert(work_.front.end(), link.left_values.begin(), link.left_values.end());
-        if (e == 0) continue;
+        if (e == 0) return true;
         const auto n = static_cast<std::ptrdiff_t>(link.merged_values.size());
         link.merged.apply(work_.front.data());
         std::copy_n(work_.front.begin(), n, link.merged_values.begin());
         work_.front.erase(work_.front.begin(), work_.front.begin() + n);
-    }
+        return true;
+    };
+    in_order_behind(
+        n_links(), least_shared_links,
+        [&](int e) { eliminate_inside(links_[static_cast<std::size_t>(e)], x); }, take_in);
     work_.front.insert(work_.front.end(), x + first_row_.back(),
                        x + first_row_.back() + structure_->n_closing);
     if (ends_ != nullptr) {

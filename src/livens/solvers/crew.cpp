@@ -168,4 +168,41 @@ void divide(int n, int least, const std::function<void(int, int, int)>& work)
     current->run(n, least, work);
 }
 
+bool in_order_behind(int n, int least, const std::function<void(int)>& work,
+                     const std::function<bool(int)>& then)
+{
+    if (!Crew::divides(n, least)) {
+        for (int i = 0; i < n; ++i) {
+            work(i);
+            if (!then(i)) return false;
+        }
+        return true;
+    }
+    std::atomic<int> next{0};
+    std::vector<std::atomic<bool>> is_done(static_cast<std::size_t>(n));
+    std::mutex follows;
+    int n_followed = 0;   // both by who holds the mutex
+    bool goes_on = true;
+    const auto follow = [&] {
+        for (; goes_on && n_followed < n && is_done[n_followed].load(std::memory_order_acquire); ++n_followed)
+            goes_on = then(n_followed);
+        if (!goes_on) next = n;
+    };
+    divide(std::min(Crew::size(), n / least), 1, [&](int, int, int) {
+        try {
+            for (int i = next++; i < n; i = next++) {
+                work(i);
+                is_done[i].store(true, std::memory_order_release);
+                const std::unique_lock lock(follows, std::try_to_lock);
+                if (lock) follow();
+            }
+        } catch (...) {
+            next = n;
+            throw;
+        }
+    });
+    follow();   // those that ended while another one followed
+    return goes_on;
+}
+
 }   // namespace livens::inline solvers_internal

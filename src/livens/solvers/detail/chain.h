@@ -72,7 +72,7 @@ private:
     void solve(std::span<double> x, bool is_transposed) const;
     void apply_inverse(double* x) const;
     void apply_inverse_transposed(double* x) const;
-    void eliminate_inside(const double* x) const;
+    void eliminate_inside(const Link& link, const double* x) const;
     void eliminate_transposed(const Link& link, const double* x) const;
     void substitute_back(double* x) const;
     void substitute_inside(double* x) const;
