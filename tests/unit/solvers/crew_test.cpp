@@ -72,6 +72,68 @@ TEST(Crew, ThrowsWhatOneThreadWouldHaveThrown)
     }
 }
 
+/// What follows comes in order, once and behind the work of its item, whoever does it; its sum, whose order
+/// counts, has the same bits for any number of threads.
+TEST(Crew, WhatFollowsComesInOrderBehindItsWork)
+{
+    constexpr int n = 500;
+    std::vector<double> sums;
+    for (const int threads : {1, 2, 3, 7}) {
+        const Crew crew(threads);
+        std::vector<double> made(n, -1);
+        std::vector<std::atomic<int>> times(n);
+        int next = 0;
+        double sum = 0;
+        const bool is_whole = in_order_behind(
+            n, 1,
+            [&](int i) {
+                for (int k = 0; k < 100 * (i % 7); ++k) made[i] += 1e-3;
+                made[i] = 1.0 / (1 + i);
+                ++times[i];
+            },
+            [&](int i) {
+                EXPECT_EQ(i, next++);
+                EXPECT_EQ(made[i], 1.0 / (1 + i));
+                sum = 0.9 * sum + made[i];
+                return true;
+            });
+        EXPECT_TRUE(is_whole);
+        EXPECT_EQ(next, n) << threads << " threads";
+        for (const auto& one : times) EXPECT_EQ(one, 1);
+        sums.push_back(sum);
+    }
+    for (const double sum : sums) EXPECT_EQ(sum, sums.front());
+}
+
+TEST(Crew, WhatFollowsMayEndItAndThrow)
+{
+    for (const int threads : {1, 2, 3, 7}) {
+        const Crew crew(threads);
+        int last = -1;
+        const auto up_to = [&](int end) {
+            return [&last, end](int i) {
+                last = i;
+                return i < end;
+            };
+        };
+        EXPECT_FALSE(in_order_behind(
+            1000, 1, [](int) {}, up_to(37)));
+        EXPECT_EQ(last, 37) << threads << " threads";
+        const auto refuse = [](int i) {
+            if (i == 12) throw std::runtime_error("12");
+            return true;
+        };
+        last = -1;
+        EXPECT_THROW(in_order_behind(
+                         1000, 1, [&](int i) { refuse(i); }, up_to(1000)),
+                     std::runtime_error);
+        EXPECT_LT(last, 12) << "what follows came before its work";
+        EXPECT_THROW(in_order_behind(
+                         1000, 1, [](int) {}, refuse),
+                     std::runtime_error);
+    }
+}
+
 /// Sums of 1 / i over items, and of the shares: the order of the one does not depend on the threads, that of
 /// the other does.
 std::pair<double, double> sums(int threads)
