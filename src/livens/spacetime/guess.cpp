@@ -181,7 +181,7 @@ std::vector<GuessFromEnds> guesses_from_ends(const Model& model, const Ends& end
     if (from_starts.empty() && turn == 0) return {{guess_between(ends.start, ends.end), true}};
     if (turn >= std::ssize(from_starts)) return {};
     if (!is_moving(near_of(from_starts.front())) && is_moving(near_of(from_starts.back())))
-        std::ranges::reverse(from_starts);
+        std::reverse(from_starts.begin(), from_starts.end());
 
     const bool from_start = from_starts[turn];
     const State &near = near_of(from_start), &far = near_of(!from_start);
