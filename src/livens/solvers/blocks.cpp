@@ -11,11 +11,14 @@
 #include <string>
 #include <utility>
 
+#include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 
 namespace livens::inline solvers_internal {
 
 namespace {
+
+constexpr int least_shared_rooms = 32;   // of elements, that a thread takes, where there are several
 
 std::size_t entries(int rows, int columns)
 {
@@ -83,13 +86,13 @@ void BlockMatrix::resize(const BlockStructure& structure)
     running_sums(structure.n_unknowns, first_unknown_);
     storage_.resize(elements_.size());
     // assign() keeps the memory of an element whose size has not grown: marches refill one matrix for ever.
-    for (int e = 0; e < n_elements(); ++e) {
-        Patience::ask();
-        storage(e).assign(entries(n_rows(e), n_columns(e)), 0.0);
-    }
     n_border_ = structure.n_border;
     border_.resize(elements_.size());
-    for (int e = 0; e < n_elements(); ++e) border_storage(e).assign(entries(n_rows(e), n_border_), 0.0);
+    for_each_item(n_elements(), least_shared_rooms, [&](int e) {
+        Patience::ask();
+        storage(e).assign(entries(n_rows(e), n_columns(e)), 0.0);
+        border_storage(e).assign(entries(n_rows(e), n_border_), 0.0);
+    });
     const int seen = elements_.empty() ? 0 : structure.n_unknowns.front() + structure.n_unknowns.back();
     closing_.assign(entries(structure.n_closing, seen + n_border_), 0.0);
 }

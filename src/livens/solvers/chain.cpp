@@ -59,10 +59,18 @@ void ChainSolver::take_room()
 {
     links_.clear();
     links_.resize(structure_->elements.size());
+    std::vector<int> n_left{0};   // of rows, before each element
     for (int e = 0; e < n_links(); ++e) {
-        Patience::ask();
         shape(e);
+        const Link& link = links_[static_cast<std::size_t>(e)];
+        const int n_own = link.r_near + link.r_own + link.r_far - link.n_own;
+        const int n_merged = e == 0 ? 0 : link.p_near + link.n_near;
+        n_left.push_back(std::max(n_left.back(), 0) + std::max(n_own, 0) - n_merged);
     }
+    for_each_item(n_links(), least_shared_links, [&](int e) {
+        Patience::ask();
+        take_room(links_[static_cast<std::size_t>(e)], n_left[static_cast<std::size_t>(e)]);
+    });
     const int n = n_links() == 0 ? 0 : n_carried_ + structure_->n_unknowns.back() + structure_->n_border;
     if (ends_ == nullptr) closing_.resize(n, n, 0);
     matrix_.resize(*structure_);
@@ -87,13 +95,18 @@ void ChainSolver::shape(int e)
     link.r_own = row(last) - row(first) - link.r_near;
     link.p_near = link.r_near;
     link.p_far = is_last ? 0 : link.r_far;
+}
+
+/// `n_left`: rows that are left of the elements before.
+void ChainSolver::take_room(Link& link, int n_left)
+{
     link.inside.resize(link.r_near + link.r_own + link.r_far, link.n_own,
-                       link.n_near + link.n_far + s.n_border + link.p_near + link.p_far);
+                       link.n_near + link.n_far + border() + link.p_near + link.p_far);
     link.inside_values.assign(static_cast<std::size_t>(link.n_own), 0.0);
     link.left_values.assign(static_cast<std::size_t>(std::max(link.inside.n_left(), 0)), 0.0);
-    if (is_first) return;
-    link.merged.resize(std::max(front(e - 1).n_left(), 0) + std::max(link.inside.n_left(), 0),
-                       link.p_near + link.n_near, n_carried_ + link.n_far + s.n_border + link.p_far);
+    if (&link == &links_.front()) return;
+    link.merged.resize(std::max(n_left, 0) + std::max(link.inside.n_left(), 0), link.p_near + link.n_near,
+                       n_carried_ + link.n_far + border() + link.p_far);
     link.merged_values.assign(static_cast<std::size_t>(link.p_near + link.n_near), 0.0);
 }
 
@@ -236,7 +249,7 @@ Outcome ChainSolver::condense_all()
     if (!std::isfinite(largest(matrix_.closing())) || !are_all_good()) return Outcome::not_finite;
     const bool is_regular = in_order_behind(
         n_links(), least_shared_links,
-        [&](int e) {
+        [&](int, int e) {
             Patience::ask();
             is_good[e] = condense(links_[e], e);
         },

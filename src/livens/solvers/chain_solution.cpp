@@ -119,7 +119,7 @@ void ChainSolver::apply_inverse(double* x) const
     };
     in_order_behind(
         n_links(), least_shared_links,
-        [&](int e) { eliminate_inside(links_[static_cast<std::size_t>(e)], x); }, take_in);
+        [&](int, int e) { eliminate_inside(links_[static_cast<std::size_t>(e)], x); }, take_in);
     work_.front.insert(work_.front.end(), x + first_row_.back(),
                        x + first_row_.back() + structure_->n_closing);
     if (ends_ != nullptr) {

@@ -168,12 +168,12 @@ void divide(int n, int least, const std::function<void(int, int, int)>& work)
     current->run(n, least, work);
 }
 
-bool in_order_behind(int n, int least, const std::function<void(int)>& work,
+bool in_order_behind(int n, int least, const std::function<void(int, int)>& work,
                      const std::function<bool(int)>& then)
 {
     if (!Crew::divides(n, least)) {
         for (int i = 0; i < n; ++i) {
-            work(i);
+            work(0, i);
             if (!then(i)) return false;
         }
         return true;
@@ -188,10 +188,10 @@ bool in_order_behind(int n, int least, const std::function<void(int)>& work,
             goes_on = then(n_followed);
         if (!goes_on) next = n;
     };
-    divide(std::min(Crew::size(), n / least), 1, [&](int, int, int) {
+    divide(std::min(Crew::size(), n / least), 1, [&](int slot, int, int) {
         try {
             for (int i = next++; i < n; i = next++) {
-                work(i);
+                work(slot, i);
                 is_done[i].store(true, std::memory_order_release);
                 const std::unique_lock lock(follows, std::try_to_lock);
                 if (lock) follow();

@@ -61,10 +61,11 @@ void for_each_item(int n, int least, const Work& work)
     });
 }
 
-/// Calls work(i) of all items, divided likewise but whoever is done takes the next, and then(i) in their order,
-/// each once work(i) has ended, by one thread at a time while others work on: what goes from item to item
-/// costs no time of its own where it is less than a thread's part of the whole. Ends where then() says no.
-bool in_order_behind(int n, int least, const std::function<void(int)>& work,
+/// Calls work(slot, i) of all items, divided likewise but whoever is done takes the next, and then(i) in their
+/// order, each once the work of i has ended, by one thread at a time while others work on: what goes from item
+/// to item costs no time of its own where it is less than a thread's part of the whole. Ends where then() says
+/// no.
+bool in_order_behind(int n, int least, const std::function<void(int slot, int item)>& work,
                      const std::function<bool(int)>& then);
 
 }   // namespace livens::inline solvers_internal

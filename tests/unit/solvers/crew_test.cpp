@@ -86,7 +86,8 @@ TEST(Crew, WhatFollowsComesInOrderBehindItsWork)
         double sum = 0;
         const bool is_whole = in_order_behind(
             n, 1,
-            [&](int i) {
+            [&](int slot, int i) {
+                EXPECT_LT(slot, threads);
                 for (int k = 0; k < 100 * (i % 7); ++k) made[i] += 1e-3;
                 made[i] = 1.0 / (1 + i);
                 ++times[i];
@@ -117,7 +118,7 @@ TEST(Crew, WhatFollowsMayEndItAndThrow)
             };
         };
         EXPECT_FALSE(in_order_behind(
-            1000, 1, [](int) {}, up_to(37)));
+            1000, 1, [](int, int) {}, up_to(37)));
         EXPECT_EQ(last, 37) << threads << " threads";
         const auto refuse = [](int i) {
             if (i == 12) throw std::runtime_error("12");
@@ -125,11 +126,11 @@ TEST(Crew, WhatFollowsMayEndItAndThrow)
         };
         last = -1;
         EXPECT_THROW(in_order_behind(
-                         1000, 1, [&](int i) { refuse(i); }, up_to(1000)),
+                         1000, 1, [&](int, int i) { refuse(i); }, up_to(1000)),
                      std::runtime_error);
         EXPECT_LT(last, 12) << "what follows came before its work";
         EXPECT_THROW(in_order_behind(
-                         1000, 1, [](int) {}, refuse),
+                         1000, 1, [](int, int) {}, refuse),
                      std::runtime_error);
     }
 }

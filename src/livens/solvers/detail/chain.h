@@ -55,6 +55,7 @@ private:
     const Panel& front(int e) const { return e == 0 ? links_[0].inside : links_[e].merged; }
     void take_room();
     void shape(int e);
+    void take_room(Link& link, int n_left);
     void fill_inside(int e);
     void fill_merged(int e);
     void fill_closing();

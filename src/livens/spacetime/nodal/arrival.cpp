@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/march/end_point.h"
 #include "livens/spacetime/nodal/elimination.h"
@@ -31,14 +32,16 @@ WindowLayout open_layout(const ModelTables& tables, const TimeMesh& mesh, const 
 bool place(NodalSystem& system, const ModelTables& tables, const WindowLayout& layout, const Guess& motion)
 {
     system.open(layout, nullptr, nullptr);
-    std::vector<double> X(12 * tables.bodies.size());
-    for (int A = 0; A < layout.n_nodes(); ++A) {
-        Patience::ask();
-        const State state = motion(layout.time(system.rule(), A));
-        for (std::size_t b = 0; b < state.X.size(); ++b)
-            std::copy_n(state.X[b].a, 12, X.begin() + static_cast<std::ptrdiff_t>(12 * b));
-        system.nodes().place_at(A, X.data());
-    }
+    in_shares(layout.n_nodes(), least_shared, [&](int, int begin, int end) {
+        std::vector<double> X(12 * tables.bodies.size());
+        for (int A = begin; A < end; ++A) {
+            Patience::ask();
+            const State state = motion(layout.time(system.rule(), A));
+            for (std::size_t b = 0; b < state.X.size(); ++b)
+                std::copy_n(state.X[b].a, 12, X.begin() + static_cast<std::ptrdiff_t>(12 * b));
+            system.nodes().place_at(A, X.data());
+        }
+    });
     if (!system.settle()) return false;
     EndPoint point(tables);
     for (const bool last : {false, true}) {

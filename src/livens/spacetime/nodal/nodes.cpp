@@ -234,10 +234,10 @@ void Nodes::begin_constraining()
 {
     if (bases_.empty()) {
         std::vector<ConstraintBasis> bases(known_.size());
-        for (ConstraintBasis& basis : bases) {
+        for_each_item(static_cast<int>(bases.size()), least_shared, [&](int A) {
             Patience::ask();
-            basis.resize(tables_, false);
-        }
+            bases[A].resize(tables_, false);
+        });
         bases_ = std::move(bases);
     }
     const auto n_threads = static_cast<std::size_t>(Crew::size());
@@ -308,8 +308,9 @@ bool Nodes::constrain(const WindowLayout& layout, bool same_choices)
         }
     });
     if (!is_shared) return std::isfinite(sum);
-    in_shares(n, least_shared, [&](int slot, int begin, int end) {
-        for (int e = begin; e < end; ++e)
+    in_order_behind(
+        n, least_shared,
+        [&](int slot, int e) {
             for_nodes(e, [&](int B) {
                 const auto change = change_at(e, B, work_[slot].data());
                 double* changes = phi_.data() + (e * degree + B) * tables_.rank;
@@ -317,12 +318,14 @@ bool Nodes::constrain(const WindowLayout& layout, bool same_choices)
                 for (int c = 0; c < tables_.rank; ++c)
                     changes[c] = change(c, row[c], tables_.rows[row[c]].is_quadratic);
             });
-    });
-    for (int e = 0; e < n; ++e)
-        for_nodes(e, [&](int B) {
-            const double* changes = phi_.data() + (e * degree + B) * tables_.rank;
-            add_violations(
-                e, B, [changes](int c, int, bool) { return changes[c]; }, sum);
+        },
+        [&](int e) {
+            for_nodes(e, [&](int B) {
+                const double* changes = phi_.data() + (e * degree + B) * tables_.rank;
+                add_violations(
+                    e, B, [changes](int c, int, bool) { return changes[c]; }, sum);
+            });
+            return true;
         });
     return std::isfinite(sum);
 }
