@@ -289,20 +289,27 @@ bool ChainSolver::close_by_others(bool is_regular)
 LinearReport ChainSolver::report() const
 {
     LinearReport report{.singular_node = singular_node_};
-    report.smallest_pivot = is_regular_ ? std::numeric_limits<double>::infinity() : 0;
     const auto look = [&](const Panel& panel) {
         report.factor_entries += static_cast<long long>(panel.n_rows()) * panel.width();
         for (long long k = 0; k < panel.n_pivots(); ++k)
             report.flops += 2 * (panel.n_rows() - k - 1) * (panel.width() - k - 1);
-        if (!is_regular_) return;
-        report.smallest_pivot = std::min(report.smallest_pivot, panel.smallest_pivot());
-        report.largest_entry = std::max(report.largest_entry, panel.largest());
     };
     for (const Link& link : links_) {
         look(link.inside);
         look(link.merged);
     }
     look(closing_);
+    if (!is_regular_) return report;
+    Values smallest(links_.size()), largest(links_.size());
+    for_each_item(n_links(), least_shared_links, [&](int e) {
+        const Panel &inside = links_[e].inside, &merged = links_[e].merged;
+        smallest[e] = std::min(inside.smallest_pivot(), merged.smallest_pivot());
+        largest[e] = std::max(inside.largest(), merged.largest());
+    });
+    report.smallest_pivot = closing_.smallest_pivot();
+    report.largest_entry = closing_.largest();
+    for (const double pivot : smallest) report.smallest_pivot = std::min(report.smallest_pivot, pivot);
+    for (const double entry : largest) report.largest_entry = std::max(report.largest_entry, entry);
     return report;
 }
 

@@ -131,82 +131,83 @@ void ChainSolver::apply_inverse(double* x) const
         closing_.apply(work_.front.data());
         closing_.solve(work_.front.data());
     }
-    substitute_back(x);
-    substitute_inside(x);
+    substitute(x);
 }
 
-/// From what the closing rows gave, which stands in work_.front: carried, far, border. Unknowns between
-/// elements, and what passes there, which takes the place of the rows merged.
-void ChainSolver::substitute_back(double* x) const
+/// From what the closing rows gave, which stands in work_.front: carried, far, border. Back along the elements,
+/// with their own unknowns behind.
+void ChainSolver::substitute(double* x) const
 {
-    const int b = border(), far = links_.back().n_far;
-    const double *carried = work_.front.data(), *of_border = carried + n_carried_ + far;
-    std::copy_n(of_border, b, x + first_unknown_.back());
+    const int far = links_.back().n_far, last = n_links() - 1;
+    const double* carried = work_.front.data();
+    std::copy_n(carried + n_carried_ + far, border(), x + first_unknown_.back());
     std::copy_n(carried + n_carried_, far, x + unknown(links_.back().last));
     std::copy_n(carried, n_carried_, x);
     work_.passed.clear();   // at the far end
-    for (int e = n_links() - 1; e > 0; --e) {
-        const Link& link = links_[static_cast<std::size_t>(e)];
-        const double* of_far = x + unknown(link.last);
-        Values& merged = link.merged_values;
-        work_.others.assign(merged.begin(), merged.end());
-        work_.others.insert(work_.others.end(), carried, carried + n_carried_);
-        work_.others.insert(work_.others.end(), of_far, of_far + link.n_far);
-        work_.others.insert(work_.others.end(), of_border, of_border + b);
-        work_.others.insert(work_.others.end(), work_.passed.begin(), work_.passed.end());
-        link.merged.solve(work_.others.data());
-        std::copy_n(work_.others.begin(), merged.size(), merged.begin());
-        std::copy_n(merged.begin() + link.p_near, link.n_near, x + unknown(link.first));
-        work_.passed.assign(merged.begin(), merged.begin() + link.p_near);
-    }
+    in_order_ahead(
+        n_links(), least_shared_links,
+        [&](int i) {
+            if (i < last) substitute_between(links_[static_cast<std::size_t>(last - i)], x);
+        },
+        [&](int, int i) { substitute_inside(links_[static_cast<std::size_t>(last - i)], x); });
 }
 
-/// The elements' own unknowns.
-void ChainSolver::substitute_inside(double* x) const
+/// Unknowns at the near end of an element, and what passes there, which takes the place of the rows merged.
+void ChainSolver::substitute_between(const Link& link, double* x) const
 {
+    const double *carried = work_.front.data(), *of_far = x + unknown(link.last);
     const double* of_border = x + first_unknown_.back();
-    in_shares(n_links(), least_shared_links, [&](int, int begin, int end) {
-        Values all;
-        for (int e = begin; e < end; ++e) {
-            const Link& link = links_[static_cast<std::size_t>(e)];
-            const double *of_near = x + unknown(link.first), *of_far = x + unknown(link.last);
-            const auto passes = [&](const Values& merged, int n) {
-                all.insert(all.end(), merged.begin(), merged.begin() + n);
-            };
-            all = link.inside_values;
-            all.insert(all.end(), of_near, of_near + link.n_near);
-            all.insert(all.end(), of_far, of_far + link.n_far);
-            all.insert(all.end(), of_border, of_border + border());
-            passes(link.merged_values, link.p_near);
-            if (link.p_far > 0) passes(links_[static_cast<std::size_t>(e) + 1].merged_values, link.p_far);
-            link.inside.solve(all.data());
-            std::copy_n(all.begin(), link.n_own, x + unknown(link.first) + link.n_near);
-        }
-    });
+    Values& merged = link.merged_values;
+    work_.others.assign(merged.begin(), merged.end());
+    work_.others.insert(work_.others.end(), carried, carried + n_carried_);
+    work_.others.insert(work_.others.end(), of_far, of_far + link.n_far);
+    work_.others.insert(work_.others.end(), of_border, of_border + border());
+    work_.others.insert(work_.others.end(), work_.passed.begin(), work_.passed.end());
+    link.merged.solve(work_.others.data());
+    std::copy_n(work_.others.begin(), merged.size(), merged.begin());
+    std::copy_n(merged.begin() + link.p_near, link.n_near, x + unknown(link.first));
+    work_.passed.assign(merged.begin(), merged.begin() + link.p_near);
 }
 
-/// Of an element in a transposed solution: its unknowns, and what they leave to carried, near, passed and
-/// border.
+/// An element's own unknowns.
+void ChainSolver::substitute_inside(const Link& link, double* x) const
+{
+    const double *of_near = x + unknown(link.first), *of_far = x + unknown(link.last);
+    const double* of_border = x + first_unknown_.back();
+    Values all;
+    all.reserve(static_cast<std::size_t>(link.inside.width()));
+    all = link.inside_values;
+    const auto passes = [&all](const Values& merged, int n) {
+        all.insert(all.end(), merged.begin(), merged.begin() + n);
+    };
+    all.insert(all.end(), of_near, of_near + link.n_near);
+    all.insert(all.end(), of_far, of_far + link.n_far);
+    all.insert(all.end(), of_border, of_border + border());
+    passes(link.merged_values, link.p_near);
+    if (link.p_far > 0) passes((&link + 1)->merged_values, link.p_far);   // the next element's
+    link.inside.solve(all.data());
+    std::copy_n(all.begin(), link.n_own, x + unknown(link.first) + link.n_near);
+}
+
+/// Of an element in a transposed solution: what its own unknowns leave to near, far, border and what passes.
+void ChainSolver::eliminate_own_transposed(const Link& link, const double* x) const
+{
+    std::copy_n(x + unknown(link.first) + link.n_near, link.n_own, link.inside_values.begin());
+    link.passed_on.assign(static_cast<std::size_t>(link.inside.width() - link.inside.n_pivots()), 0.0);
+    link.inside.solve_transposed(link.inside_values.data(), link.passed_on.data());
+}
+
+/// What stands at its near end then, and what is carried, go on to its far end.
 void ChainSolver::eliminate_transposed(const Link& link, const double* x) const
 {
     const bool is_first = &link == &links_.front();
-    auto& [right_side, rows, front, passed, others, carried, of_border, near] = work_;
-    const double *own = x + unknown(link.first) + link.n_near, *of_far = x + unknown(link.last);
+    auto& [right_side, front, passed, others, carried, of_border, near] = work_;
+    const double* of_far = x + unknown(link.last);
     Values& nearest = is_first ? carried : near;
-    std::copy_n(own, link.n_own, link.inside_values.begin());
-    others = nearest;
-    others.insert(others.end(), of_far, of_far + link.n_far);
-    others.insert(others.end(), of_border.begin(), of_border.end());
-    others.insert(others.end(), passed.begin(), passed.end());
-    others.resize(others.size() + static_cast<std::size_t>(link.p_far), 0.0);
-    link.inside.solve_transposed(link.inside_values.data(), others.data());
-    const double* from = others.data();
-    Values far, passed_far;
-    take(from, nearest, link.n_near);
-    take(from, far, link.n_far);
-    take(from, of_border, border());
-    take(from, passed, link.p_near);
-    take(from, passed_far, link.p_far);
+    Values far(of_far, of_far + link.n_far), passed_far(static_cast<std::size_t>(link.p_far), 0.0);
+    const double* from = link.passed_on.data();
+    for (Values* to : {&nearest, &far, &of_border, &passed, &passed_far})
+        for (double& value : *to) value += *from++;
     if (!is_first) {
         std::copy(passed.begin(), passed.end(), link.merged_values.begin());
         std::copy(near.begin(), near.end(), link.merged_values.begin() + link.p_near);
@@ -228,36 +229,52 @@ void ChainSolver::eliminate_transposed(const Link& link, const double* x) const
 void ChainSolver::apply_inverse_transposed(double* x) const
 {
     if (n_links() == 0) return;
-    auto& [right_side, rows, front, passed, others, carried, of_border, near] = work_;
+    auto& [right_side, front, passed, others, carried, of_border, near] = work_;
     const int behind = first_unknown_.back(), n_closing = structure_->n_closing;
     carried.assign(x, x + n_carried_);
     of_border.assign(x + behind, x + behind + border());
     near.clear();
     passed.clear();
-    for (const Link& link : links_) eliminate_transposed(link, x);
+    in_order_behind(
+        n_links(), least_shared_links,
+        [&](int, int e) { eliminate_own_transposed(links_[static_cast<std::size_t>(e)], x); },
+        [&](int e) {
+            eliminate_transposed(links_[static_cast<std::size_t>(e)], x);
+            return true;
+        });
     front = carried;
     for (const Values* v : {&near, &of_border}) front.insert(front.end(), v->begin(), v->end());
     closing_.solve_transposed(front.data(), nullptr);
     closing_.apply_transposed(front.data());
     std::copy(front.end() - n_closing, front.end(), x + first_row_.back());
     front.resize(front.size() - static_cast<std::size_t>(n_closing));
-    for (int e = n_links() - 1; e >= 0; --e) {
-        const Link& link = links_[static_cast<std::size_t>(e)];
-        if (e > 0) {
-            front.insert(front.begin(), link.merged_values.begin(), link.merged_values.end());
-            link.merged.apply_transposed(front.data());
-        }
-        const auto n_left = static_cast<std::ptrdiff_t>(link.inside.n_left());
-        rows.assign(link.inside_values.begin(), link.inside_values.end());
-        rows.insert(rows.end(), front.end() - n_left, front.end());
-        front.resize(front.size() - static_cast<std::size_t>(n_left));
-        link.inside.apply_transposed(rows.data());
-        double* to = x + row(link.first);
-        if (e + 1 == n_links())
-            std::copy_n(rows.end() - link.r_far, link.r_far, to + link.r_near + link.r_own);
-        std::copy_n(rows.begin(), link.r_own, to + link.r_near);
-        std::copy_n(rows.begin() + link.r_own, link.r_near, to);
-    }
+    const int last = n_links() - 1;
+    in_order_ahead(
+        n_links(), least_shared_links,
+        [&](int i) {
+            const Link& link = links_[static_cast<std::size_t>(last - i)];
+            if (i < last) {
+                front.insert(front.begin(), link.merged_values.begin(), link.merged_values.end());
+                link.merged.apply_transposed(front.data());
+            }
+            const auto n_left = static_cast<std::ptrdiff_t>(link.left_values.size());
+            std::copy(front.end() - n_left, front.end(), link.left_values.begin());
+            front.resize(front.size() - link.left_values.size());
+        },
+        [&](int, int i) { rows_inside(links_[static_cast<std::size_t>(last - i)], x); });
+}
+
+/// An element's own rows, those of its near end, and of the last of its far end.
+void ChainSolver::rows_inside(const Link& link, double* x) const
+{
+    Values rows = link.inside_values;
+    rows.insert(rows.end(), link.left_values.begin(), link.left_values.end());
+    link.inside.apply_transposed(rows.data());
+    double* to = x + row(link.first);
+    if (&link == &links_.back())
+        std::copy_n(rows.end() - link.r_far, link.r_far, to + link.r_near + link.r_own);
+    std::copy_n(rows.begin(), link.r_own, to + link.r_near);
+    std::copy_n(rows.begin() + link.r_own, link.r_near, to);
 }
 
 }   // namespace livens::inline solvers_internal

@@ -205,4 +205,35 @@ bool in_order_behind(int n, int least, const std::function<void(int, int)>& work
     return goes_on;
 }
 
+void in_order_ahead(int n, int least, const std::function<void(int)>& first,
+                    const std::function<void(int, int)>& work)
+{
+    if (!Crew::divides(n, least)) {
+        for (int i = 0; i < n; ++i) first(i);
+        for (int i = 0; i < n; ++i) work(0, i);
+        return;
+    }
+    std::atomic<int> next{0}, n_ready{0};
+    std::atomic<bool> is_over = false;
+    divide(std::min(Crew::size(), n / least), 1, [&](int slot, int, int) {
+        try {
+            for (int i = 0; slot == 0 && i < n && !is_over; ++i) {
+                first(i);
+                n_ready.store(i + 1, std::memory_order_release);
+            }
+            for (int i = next++; i < n; i = next++) {
+                while (n_ready.load(std::memory_order_acquire) <= i) {
+                    if (is_over) return;
+                    std::this_thread::yield();
+                }
+                work(slot, i);
+            }
+        } catch (...) {
+            is_over = true;
+            next = n;
+            throw;
+        }
+    });
+}
+
 }   // namespace livens::inline solvers_internal

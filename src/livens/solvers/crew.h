@@ -68,4 +68,9 @@ void for_each_item(int n, int least, const Work& work)
 bool in_order_behind(int n, int least, const std::function<void(int slot, int item)>& work,
                      const std::function<bool(int)>& then);
 
+/// Calls first(i) of all items in their order, by the one who asks, and work(slot, i) once first(i) has ended, by
+/// whoever is free.
+void in_order_ahead(int n, int least, const std::function<void(int)>& first,
+                    const std::function<void(int slot, int item)>& work);
+
 }   // namespace livens::inline solvers_internal

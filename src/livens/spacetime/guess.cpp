@@ -80,7 +80,8 @@ double missing_momentum(const Model& model, const State& reached, const State& k
 
 }   // namespace
 
-MarchGuess guess_from_state(const Model& model, const State& state, std::span<const double> times, int degree)
+MarchGuess guess_from_state(const Model& model, const State& state, std::span<const double> times, int degree,
+                            double velocity_jump)
 {
     const bool is_forwards = times.back() > times.front();
     Problem problem{{state, Known::state, state, Known::nothing}};
@@ -97,7 +98,7 @@ MarchGuess guess_from_state(const Model& model, const State& state, std::span<co
     options.solve.tolerance = 1e-12;
     options.direction = is_forwards ? 1 : -1;
     options.may_divide = true;
-    options.criteria = {acceptable_velocity_jump, true};
+    options.criteria = {velocity_jump, true};
     solve_windows(window, mesh, options, report);
     auto march = std::make_shared<Motion>(window.take_motion());
     const double reached = march->mesh.ends.empty() ? times.front()
@@ -150,12 +151,28 @@ Guess guess_between(const State& first, const State& last)
 
 namespace {
 
+/// Of many instants every fourth and the last, with those at which loads jump: elements of a march, which takes
+/// time from start to end while all else is shared among threads. Where they are too long they are divided.
+std::vector<double> instants_of_march(const Model& model, std::span<const double> times)
+{
+    constexpr std::size_t many = 200, joined = 4;
+    if (times.size() <= many) return {times.begin(), times.end()};
+    const std::vector<double> breaks = model.load_breaks();
+    std::vector<double> found;
+    for (std::size_t i = 0; i < times.size(); ++i)
+        if (i % joined == 0 || i + 1 == times.size() || std::ranges::binary_search(breaks, times[i]))
+            found.push_back(times[i]);
+    return found;
+}
+
 /// The march from a state that is complete, stated or guessed, at the near end.
 Guess march_from(const Model& model, const State& near, const GuessMesh& mesh, bool from_start)
 {
-    std::vector<double> march(mesh.times.begin(), mesh.times.end());
+    constexpr double fine = 1e-6;   // velocity jump, of a motion that may have all of its digits
+    std::vector<double> march = instants_of_march(model, mesh.times);
     if (!from_start) std::reverse(march.begin(), march.end());
-    return guess_from_state(model, near, march, mesh.degree).motion;
+    const bool is_joined = march.size() < mesh.times.size();
+    return guess_from_state(model, near, march, mesh.degree, is_joined ? fine : acceptable_velocity_jump).motion;
 }
 
 /// How far a motion misses what is known at an end, in lengths, radians, or momenta of some speed.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "livens/diagnostics/acceptance.h"
 #include "livens/dynamics/rows/tables.h"
 #include "livens/spacetime/march/ends.h"
 #include "livens/spacetime/march/window.h"
@@ -13,14 +14,15 @@
 namespace livens::inline spacetime_internal {
 
 /// From a state along the given instants, which rise or fall from its own: a march of lobatto(degree) over
-/// them, dividing elements as solve() does, and where that fails straight on from its last good element.
+/// them, dividing elements whose velocity jump is above `velocity_jump`, and where that fails straight on from
+/// its last good element.
 struct MarchGuess {
     Guess motion;
     double reached = 0;      ///< s; the last instant if all went well
     bool is_closed = true;   ///< else no march begins near the state, and the motion is a steady one
 };
 MarchGuess guess_from_state(const Model& model, const State& state, std::span<const double> times,
-                            int degree = 2);
+                            int degree = 2, double velocity_jump = acceptable_velocity_jump);
 
 /// Points and directors going on steadily from a state.
 Guess guess_steady(const State& state);

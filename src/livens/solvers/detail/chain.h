@@ -13,9 +13,10 @@ namespace livens::inline solvers_internal {
 
 inline constexpr int least_shared_links = 8;   // that a thread takes, where there are several
 
-/// Of an element, while solving: of its pivots, of those of what is merged, and of rows inside without.
+/// Of an element, while solving: of its pivots, of those of what is merged, and of rows inside without; of a
+/// transposed solution also what its pivots leave to its other columns.
 struct LinkValues {
-    mutable std::vector<double> inside_values, merged_values, left_values;
+    mutable std::vector<double> inside_values, merged_values, left_values, passed_on;
 };
 
 /// An element of the chain. Columns of `inside`: its own unknowns | near, far, border, passed_near,
@@ -33,7 +34,7 @@ struct Link : LinkValues {
 
 /// Vectors on the way of a solution.
 struct ChainWork {
-    std::vector<double> right_side, rows, front, passed, others;
+    std::vector<double> right_side, front, passed, others;
     std::vector<double> carried, of_border, near;   // of a transposed solution
 };
 
@@ -74,9 +75,12 @@ private:
     void apply_inverse(double* x) const;
     void apply_inverse_transposed(double* x) const;
     void eliminate_inside(const Link& link, const double* x) const;
+    void eliminate_own_transposed(const Link& link, const double* x) const;
     void eliminate_transposed(const Link& link, const double* x) const;
-    void substitute_back(double* x) const;
-    void substitute_inside(double* x) const;
+    void rows_inside(const Link& link, double* x) const;
+    void substitute(double* x) const;
+    void substitute_between(const Link& link, double* x) const;
+    void substitute_inside(const Link& link, double* x) const;
     void subtract_product(const double* x, double* y, bool is_transposed) const;
 
     ChainEnds* ends_;   // or null
