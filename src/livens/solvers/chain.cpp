@@ -232,6 +232,13 @@ Outcome ChainSolver::factorise(BlockMatrix& matrix)
     return outcome;
 }
 
+/// What merging costs of what elements cost, by the sizes of panels.
+LoopInOrder ChainSolver::in_order(const std::function<double(const Panel&)>& cost) const
+{
+    const Link& typical = links_[links_.size() / 2];
+    return {n_links(), least_shared_links, cost(typical.merged) / std::max(cost(typical.inside), 1.0)};
+}
+
 Outcome ChainSolver::condense_all()
 {
     const RowFunctions& functions = row_functions();
@@ -248,7 +255,9 @@ Outcome ChainSolver::condense_all()
     const auto are_all_good = [&] { return std::ranges::all_of(is_good, [](char is) { return is != 0; }); };
     if (!std::isfinite(largest(matrix_.closing())) || !are_all_good()) return Outcome::not_finite;
     const bool is_regular = in_order_behind(
-        n_links(), least_shared_links,
+        in_order([](const Panel& panel) {
+            return static_cast<double>(panel.n_rows()) * panel.n_pivots() * panel.width();
+        }),
         [&](int, int e) {
             Patience::ask();
             is_good[e] = condense(links_[e], e);

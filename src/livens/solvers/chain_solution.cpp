@@ -17,6 +17,9 @@ namespace {
 
 using Values = std::vector<double>;
 
+/// Of a right-hand side through a panel, some allocations and copies with it.
+double cost_of_pass(const Panel& panel) { return 500.0 + panel.n_pivots() * panel.width(); }
+
 void take(const double*& from, Values& to, int n)
 {
     to.assign(from, from + n);
@@ -118,7 +121,7 @@ void ChainSolver::apply_inverse(double* x) const
         return true;
     };
     in_order_behind(
-        n_links(), least_shared_links,
+        in_order(cost_of_pass),
         [&](int, int e) { eliminate_inside(links_[static_cast<std::size_t>(e)], x); }, take_in);
     work_.front.insert(work_.front.end(), x + first_row_.back(),
                        x + first_row_.back() + structure_->n_closing);
@@ -145,7 +148,7 @@ void ChainSolver::substitute(double* x) const
     std::copy_n(carried, n_carried_, x);
     work_.passed.clear();   // at the far end
     in_order_ahead(
-        n_links(), least_shared_links,
+        in_order(cost_of_pass),
         [&](int i) {
             if (i < last) substitute_between(links_[static_cast<std::size_t>(last - i)], x);
         },
@@ -236,7 +239,7 @@ void ChainSolver::apply_inverse_transposed(double* x) const
     near.clear();
     passed.clear();
     in_order_behind(
-        n_links(), least_shared_links,
+        in_order(cost_of_pass),
         [&](int, int e) { eliminate_own_transposed(links_[static_cast<std::size_t>(e)], x); },
         [&](int e) {
             eliminate_transposed(links_[static_cast<std::size_t>(e)], x);
@@ -250,7 +253,7 @@ void ChainSolver::apply_inverse_transposed(double* x) const
     front.resize(front.size() - static_cast<std::size_t>(n_closing));
     const int last = n_links() - 1;
     in_order_ahead(
-        n_links(), least_shared_links,
+        in_order(cost_of_pass),
         [&](int i) {
             const Link& link = links_[static_cast<std::size_t>(last - i)];
             if (i < last) {

@@ -168,70 +168,108 @@ void divide(int n, int least, const std::function<void(int, int, int)>& work)
     current->run(n, least, work);
 }
 
-bool in_order_behind(int n, int least, const std::function<void(int, int)>& work,
+namespace {
+
+/// Who has which item of a loop in order: the first slot, which does what goes from item to item as well, has
+/// fewer. Ends of a loop that is broken off, and items that others wait for, are told to all.
+class Turns {
+public:
+    explicit Turns(const LoopInOrder& loop)
+        : n(loop.n), n_slots(std::min(Crew::size(), loop.n / std::max(loop.least, 1))),
+          is_done_(static_cast<std::size_t>(loop.n))
+    {
+        // n_first + n in_turn = (n - n_first) / (n_slots - 1)
+        const double others = n_slots - 1, share = std::max(0.0, (1 - loop.in_turn * others) / n_slots);
+        n_first = static_cast<int>(share * n);
+    }
+
+    void end(int item) { is_done_[item].store(true, std::memory_order_release); }
+    /// False: it is broken off.
+    bool await(int item)
+    {
+        while (!is_done_[item].load(std::memory_order_acquire)) {
+            if (is_over_) return false;
+            Patience::ask();
+            std::this_thread::yield();
+        }
+        return true;
+    }
+    void break_off() { is_over_ = true; }
+    bool is_over() const { return is_over_; }
+    /// Calls role(first slot, slot behind) of each thread.
+    template <class Role>
+    void divide(const Role& role)
+    {
+        solvers_internal::divide(n_slots, 1, [&](int, int begin, int end) {
+            try {
+                role(begin, end);
+            } catch (...) {
+                is_over_ = true;
+                throw;
+            }
+        });
+    }
+
+    const int n, n_slots;
+    int n_first = 0;   // items of the first slot
+
+private:
+    std::vector<std::atomic<bool>> is_done_;
+    std::atomic<bool> is_over_ = false;
+};
+
+}   // namespace
+
+/// The first slot has the first items, and is behind the others from there on.
+bool in_order_behind(const LoopInOrder& loop, const std::function<void(int, int)>& work,
                      const std::function<bool(int)>& then)
 {
-    if (!Crew::divides(n, least)) {
-        for (int i = 0; i < n; ++i) {
+    if (!Crew::divides(loop.n, loop.least)) {
+        for (int i = 0; i < loop.n; ++i) {
             work(0, i);
             if (!then(i)) return false;
         }
         return true;
     }
-    std::atomic<int> next{0};
-    std::vector<std::atomic<bool>> is_done(static_cast<std::size_t>(n));
-    std::mutex follows;
-    int n_followed = 0;   // both by who holds the mutex
-    bool goes_on = true;
-    const auto follow = [&] {
-        for (; goes_on && n_followed < n && is_done[n_followed].load(std::memory_order_acquire); ++n_followed)
-            goes_on = then(n_followed);
-        if (!goes_on) next = n;
+    Turns turns(loop);
+    const auto bound = [&](int slot) {
+        const long long left = turns.n - turns.n_first;
+        return slot == 0 ? 0 : turns.n_first + static_cast<int>(left * (slot - 1) / (turns.n_slots - 1));
     };
-    divide(std::min(Crew::size(), n / least), 1, [&](int slot, int, int) {
-        try {
-            for (int i = next++; i < n; i = next++) {
+    turns.divide([&](int begin, int end) {
+        for (int slot = begin; slot < end; ++slot)
+            for (int i = bound(slot); i < bound(slot + 1) && !turns.is_over(); ++i) {
                 work(slot, i);
-                is_done[i].store(true, std::memory_order_release);
-                const std::unique_lock lock(follows, std::try_to_lock);
-                if (lock) follow();
+                turns.end(i);
             }
-        } catch (...) {
-            next = n;
-            throw;
-        }
+        for (int i = 0; begin == 0 && i < turns.n; ++i)
+            if (!turns.await(i) || !then(i)) return turns.break_off();
     });
-    follow();   // those that ended while another one followed
-    return goes_on;
+    return !turns.is_over();
 }
 
-void in_order_ahead(int n, int least, const std::function<void(int)>& first,
+/// The first slot has the last items, the others one after the other of those before, so that none waits long.
+void in_order_ahead(const LoopInOrder& loop, const std::function<void(int)>& first,
                     const std::function<void(int, int)>& work)
 {
-    if (!Crew::divides(n, least)) {
-        for (int i = 0; i < n; ++i) first(i);
-        for (int i = 0; i < n; ++i) work(0, i);
+    if (!Crew::divides(loop.n, loop.least)) {
+        for (int i = 0; i < loop.n; ++i) first(i);
+        for (int i = 0; i < loop.n; ++i) work(0, i);
         return;
     }
-    std::atomic<int> next{0}, n_ready{0};
-    std::atomic<bool> is_over = false;
-    divide(std::min(Crew::size(), n / least), 1, [&](int slot, int, int) {
-        try {
-            for (int i = 0; slot == 0 && i < n && !is_over; ++i) {
-                first(i);
-                n_ready.store(i + 1, std::memory_order_release);
-            }
-            for (int i = next++; i < n; i = next++) {
-                while (n_ready.load(std::memory_order_acquire) <= i) {
-                    if (is_over) return;
-                    std::this_thread::yield();
-                }
+    Turns turns(loop);
+    const int n_others = turns.n - turns.n_first;
+    turns.divide([&](int begin, int end) {
+        for (int i = 0; begin == 0 && i < turns.n && !turns.is_over(); ++i) {
+            first(i);
+            turns.end(i);
+        }
+        for (int slot = begin; slot < end; ++slot) {
+            const int step = slot == 0 ? 1 : turns.n_slots - 1, last = slot == 0 ? turns.n : n_others;
+            for (int i = slot == 0 ? n_others : slot - 1; i < last; i += step) {
+                if (!turns.await(i)) return;
                 work(slot, i);
             }
-        } catch (...) {
-            is_over = true;
-            next = n;
-            throw;
         }
     });
 }

@@ -61,16 +61,20 @@ void for_each_item(int n, int least, const Work& work)
     });
 }
 
-/// Calls work(slot, i) of all items, divided likewise but whoever is done takes the next, and then(i) in their
-/// order, each once the work of i has ended, by one thread at a time while others work on: what goes from item
-/// to item costs no time of its own where it is less than a thread's part of the whole. Ends where then() says
-/// no.
-bool in_order_behind(int n, int least, const std::function<void(int slot, int item)>& work,
+/// A loop of which a part goes from item to item, which one thread does while others are at the rest.
+struct LoopInOrder {
+    int n = 0;
+    int least = 1;       ///< as of in_shares()
+    double in_turn = 0;  ///< what the part in order costs of the other one, about: that thread has less of the other
+};
+
+/// Calls work(slot, i) of all items, and then(i) in their order, each behind the work of its item. Ends where
+/// then() says no. Without a crew each comes at once behind its work.
+bool in_order_behind(const LoopInOrder& loop, const std::function<void(int slot, int item)>& work,
                      const std::function<bool(int)>& then);
 
-/// Calls first(i) of all items in their order, by the one who asks, and work(slot, i) once first(i) has ended, by
-/// whoever is free.
-void in_order_ahead(int n, int least, const std::function<void(int)>& first,
+/// Calls first(i) of all items in their order, and work(slot, i), each behind the first(i) of its item.
+void in_order_ahead(const LoopInOrder& loop, const std::function<void(int)>& first,
                     const std::function<void(int slot, int item)>& work);
 
 }   // namespace livens::inline solvers_internal

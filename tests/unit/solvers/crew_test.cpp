@@ -9,6 +9,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -72,67 +73,118 @@ TEST(Crew, ThrowsWhatOneThreadWouldHaveThrown)
     }
 }
 
-/// What follows comes in order, once and behind the work of its item, whoever does it; its sum, whose order
-/// counts, has the same bits for any number of threads.
-TEST(Crew, WhatFollowsComesInOrderBehindItsWork)
+/// Number of threads, and what a loop's part in order is said to cost of the other one.
+class LoopsInOrder : public testing::TestWithParam<std::tuple<int, double>> {
+protected:
+    LoopInOrder loop(int n) const { return {n, 1, std::get<1>(GetParam())}; }
+
+    const Crew crew{std::get<0>(GetParam())};
+};
+
+INSTANTIATE_TEST_SUITE_P(Crew, LoopsInOrder,
+                         testing::Combine(testing::Values(1, 2, 3, 7), testing::Values(0.0, 0.3, 5.0)));
+
+constexpr int n_items = 500;
+
+/// Work that takes longer for some items.
+double value_of(int i)
 {
-    constexpr int n = 500;
-    std::vector<double> sums;
-    for (const int threads : {1, 2, 3, 7}) {
-        const Crew crew(threads);
-        std::vector<double> made(n, -1);
-        std::vector<std::atomic<int>> times(n);
-        int next = 0;
-        double sum = 0;
-        const bool is_whole = in_order_behind(
-            n, 1,
-            [&](int slot, int i) {
-                EXPECT_LT(slot, threads);
-                for (int k = 0; k < 100 * (i % 7); ++k) made[i] += 1e-3;
-                made[i] = 1.0 / (1 + i);
-                ++times[i];
-            },
-            [&](int i) {
-                EXPECT_EQ(i, next++);
-                EXPECT_EQ(made[i], 1.0 / (1 + i));
-                sum = 0.9 * sum + made[i];
-                return true;
-            });
-        EXPECT_TRUE(is_whole);
-        EXPECT_EQ(next, n) << threads << " threads";
-        for (const auto& one : times) EXPECT_EQ(one, 1);
-        sums.push_back(sum);
-    }
-    for (const double sum : sums) EXPECT_EQ(sum, sums.front());
+    double value = 0;
+    for (int k = 0; k <= 100 * (i % 7); ++k) value += 1.0 / (1 + i + k);
+    return value;
 }
 
-TEST(Crew, WhatFollowsMayEndItAndThrow)
+/// What follows comes in order, once and behind the work of its item, whoever does it; its sum, whose order
+/// counts, has the same bits for any number of threads.
+TEST_P(LoopsInOrder, WhatFollowsComesBehindItsWork)
 {
-    for (const int threads : {1, 2, 3, 7}) {
-        const Crew crew(threads);
-        int last = -1;
-        const auto up_to = [&](int end) {
-            return [&last, end](int i) {
-                last = i;
-                return i < end;
-            };
-        };
-        EXPECT_FALSE(in_order_behind(
-            1000, 1, [](int, int) {}, up_to(37)));
-        EXPECT_EQ(last, 37) << threads << " threads";
-        const auto refuse = [](int i) {
-            if (i == 12) throw std::runtime_error("12");
+    std::vector<double> made(n_items, -1);
+    std::vector<std::atomic<int>> times(n_items);
+    int next = 0;
+    double sum = 0, alone = 0;
+    EXPECT_TRUE(in_order_behind(
+        loop(n_items),
+        [&](int slot, int i) {
+            EXPECT_LT(slot, std::get<0>(GetParam()));
+            made[i] = value_of(i);
+            ++times[i];
+        },
+        [&](int i) {
+            EXPECT_EQ(i, next++);
+            sum = 0.9 * sum + made[i];
             return true;
-        };
-        last = -1;
-        EXPECT_THROW(in_order_behind(
-                         1000, 1, [&](int, int i) { refuse(i); }, up_to(1000)),
-                     std::runtime_error);
-        EXPECT_LT(last, 12) << "what follows came before its work";
-        EXPECT_THROW(in_order_behind(
-                         1000, 1, [](int, int) {}, refuse),
-                     std::runtime_error);
+        }));
+    EXPECT_EQ(next, n_items);
+    for (int i = 0; i < n_items; ++i) {
+        EXPECT_EQ(times[i], 1);
+        alone = 0.9 * alone + value_of(i);
     }
+    EXPECT_EQ(sum, alone);
+}
+
+TEST_P(LoopsInOrder, WhatComesFirstComesAheadOfItsWork)
+{
+    std::vector<double> led(n_items, -1), made(n_items, -1);
+    std::vector<std::atomic<int>> times(n_items);
+    int next = 0;
+    in_order_ahead(
+        loop(n_items),
+        [&](int i) {
+            EXPECT_EQ(i, next++);
+            led[i] = (i > 0 ? 0.5 * led[i - 1] : 1) + value_of(i);
+        },
+        [&](int slot, int i) {
+            EXPECT_LT(slot, std::get<0>(GetParam()));
+            made[i] = 2 * led[i];
+            ++times[i];
+        });
+    EXPECT_EQ(next, n_items);
+    double alone = 0;
+    for (int i = 0; i < n_items; ++i) {
+        EXPECT_EQ(times[i], 1);
+        alone = (i > 0 ? 0.5 * alone : 1) + value_of(i);
+        EXPECT_EQ(made[i], 2 * alone);
+    }
+}
+
+TEST_P(LoopsInOrder, EndWhereTheyAreTold)
+{
+    int last = -1;
+    const auto nothing = [](int, int) {};
+    const auto up_to = [&](int i) {
+        last = i;
+        return i < 37;
+    };
+    EXPECT_FALSE(in_order_behind(loop(n_items), nothing, up_to));
+    EXPECT_EQ(last, 37);
+}
+
+TEST_P(LoopsInOrder, ThrowWhatIsThrown)
+{
+    int last = -1;
+    const auto refuse = [](int i) {
+        if (i == 12) throw std::runtime_error("12");
+        return true;
+    };
+    const auto see = [&](int i) {
+        last = i;
+        return true;
+    };
+    const auto nothing = [](int, int) {};
+    EXPECT_THROW(in_order_behind(
+                     loop(n_items), [&](int, int i) { refuse(i); }, see),
+                 std::runtime_error);
+    EXPECT_LT(last, 12) << "what follows came before its work";
+    EXPECT_THROW(in_order_behind(loop(n_items), nothing, refuse), std::runtime_error);
+    EXPECT_THROW(in_order_ahead(
+                     loop(n_items), [&](int i) { refuse(i); }, nothing),
+                 std::runtime_error);
+    EXPECT_THROW(in_order_ahead(
+                     loop(n_items), [](int) {}, [&](int, int i) { refuse(i); }),
+                 std::runtime_error);
+    int n = 0;   // and the crew goes on
+    in_shares(100, 100, [&](int, int begin, int end) { n += end - begin; });
+    EXPECT_EQ(n, 100);
 }
 
 /// Sums of 1 / i over items, and of the shares: the order of the one does not depend on the threads, that of

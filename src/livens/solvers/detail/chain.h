@@ -2,10 +2,12 @@
 // Factors of a chain of elements, and solutions with them.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "livens/solvers/crew.h"
 #include "livens/solvers/detail/panel.h"
 #include "livens/solvers/linear_solver.h"
 
@@ -61,6 +63,7 @@ private:
     void fill_merged(int e);
     void fill_closing();
     bool condense(Link& link, int e);
+    LoopInOrder in_order(const std::function<double(const Panel&)>& cost) const;
     bool merge(int e);
     Outcome condense_all();
     Outcome close();

@@ -309,7 +309,7 @@ bool Nodes::constrain(const WindowLayout& layout, bool same_choices)
     });
     if (!is_shared) return std::isfinite(sum);
     in_order_behind(
-        n, least_shared,
+        {n, least_shared, 0.2},
         [&](int slot, int e) {
             for_nodes(e, [&](int B) {
                 const auto change = change_at(e, B, work_[slot].data());
