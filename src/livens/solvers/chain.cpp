@@ -235,6 +235,7 @@ Outcome ChainSolver::factorise(BlockMatrix& matrix)
 /// What merging costs of what elements cost, by the sizes of panels.
 LoopInOrder ChainSolver::in_order(const std::function<double(const Panel&)>& cost) const
 {
+    if (links_.empty()) return {};
     const Link& typical = links_[links_.size() / 2];
     return {n_links(), least_shared_links, cost(typical.merged) / std::max(cost(typical.inside), 1.0)};
 }
