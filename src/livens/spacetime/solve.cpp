@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <string>
 #include <utility>
@@ -132,13 +133,27 @@ Solution spacetime_internal::solve_unjudged(const Model& model, const Problem& s
     return solution;
 }
 
+namespace {
+
+/// Threads share the nodes of a guess; what the caller's own looks at is not known.
+std::function<State(double)> one_at_a_time(std::function<State(double)> guess)
+{
+    return [guess = std::move(guess), turn = std::make_shared<std::mutex>()](double t) {
+        const std::lock_guard lock(*turn);
+        return guess(t);
+    };
+}
+
+}   // namespace
+
 Solution solve(const Model& model, const Problem& stated, const Time& time, const Method& method,
                const SolveOptions& options)
 {
     // A method that cannot take the conditions or the drives is refused before any work.
     check_method(model, stated, time, method, options);
     const Crew crew(threads_for(options.threads));
-    const Problem problem = with_prepared(stated);
+    Problem problem = with_prepared(stated);
+    if (problem.guess && Crew::size() > 1) problem.guess = one_at_a_time(std::move(problem.guess));
     Solution solution;
     if (model.has_rotors()) {
         const WithRotors rotors(model);

@@ -12,6 +12,7 @@
 #include "livens/base/text.h"
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
+#include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/nodal/elimination.h"
 
@@ -182,20 +183,22 @@ bool NodalWindow::start_from(const Guess& guess)
     if (!guess) return start_by_series();
     begin_newton();
     const ElementRule& rule = system_.rule();
-    std::vector<double> X(12 * tables_.bodies.size());
-    for (int A = 0; A < layout_.n_nodes(); ++A) {
-        if (!layout_.is_unknown(A)) continue;
-        Patience::ask();
-        const State state = guess(layout_.time(rule, A));
-        for (std::size_t b = 0; b < state.X.size(); ++b) {
-            const Matrix34 rigid =
-                tables_.bodies[b].dofs == 3
-                    ? state.X[b]
-                    : configuration(state.X[b].column(0), project_directors(directors(state.X[b])));
-            std::copy_n(rigid.a, 12, X.begin() + static_cast<std::ptrdiff_t>(12 * b));
+    in_shares(layout_.n_nodes(), least_shared, [&](int, int begin, int end) {
+        std::vector<double> X(12 * tables_.bodies.size());
+        for (int A = begin; A < end; ++A) {
+            if (!layout_.is_unknown(A)) continue;
+            Patience::ask();
+            const State state = guess(layout_.time(rule, A));
+            for (std::size_t b = 0; b < state.X.size(); ++b) {
+                const Matrix34 rigid =
+                    tables_.bodies[b].dofs == 3
+                        ? state.X[b]
+                        : configuration(state.X[b].column(0), project_directors(directors(state.X[b])));
+                std::copy_n(rigid.a, 12, X.begin() + static_cast<std::ptrdiff_t>(12 * b));
+            }
+            system_.nodes().place_at(A, X.data());
         }
-        system_.nodes().place_at(A, X.data());
-    }
+    });
     return system_.settle() && begin_conditions(guess);
 }
 
