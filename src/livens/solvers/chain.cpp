@@ -266,7 +266,8 @@ Outcome ChainSolver::condense_all()
         [&](int e) {
             Patience::ask();
             if (is_good[e]) return e == 0 || merge(e);
-            singular_node_ = links_[e].failed < 0 ? links_[e].first : node_inside(links_[e], links_[e].failed);
+            singular_node_ =
+                links_[e].failed < 0 ? links_[e].first : node_inside(links_[e], links_[e].failed);
             return false;
         });
     return is_regular ? Outcome::regular : Outcome::singular;

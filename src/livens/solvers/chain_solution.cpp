@@ -73,7 +73,9 @@ void ChainSolver::subtract_product(const double* x, double* y, bool is_transpose
             seen = take(i0 + i, behind, seen, border());
         }
     };
-    const auto far_rows = [&](int e) { return matrix_.n_rows(e) - links_[static_cast<std::size_t>(e)].r_far; };
+    const auto far_rows = [&](int e) {
+        return matrix_.n_rows(e) - links_[static_cast<std::size_t>(e)].r_far;
+    };
     if (is_transposed)
         for (int e = 0; e < n_links(); ++e) take_rows(e, 0, matrix_.n_rows(e));
     else   // each all of its rows, in the order of elements, that nobody waits for another
@@ -121,8 +123,8 @@ void ChainSolver::apply_inverse(double* x) const
         return true;
     };
     in_order_behind(
-        in_order(cost_of_pass),
-        [&](int, int e) { eliminate_inside(links_[static_cast<std::size_t>(e)], x); }, take_in);
+        in_order(cost_of_pass), [&](int, int e) { eliminate_inside(links_[static_cast<std::size_t>(e)], x); },
+        take_in);
     work_.front.insert(work_.front.end(), x + first_row_.back(),
                        x + first_row_.back() + structure_->n_closing);
     if (ends_ != nullptr) {
@@ -137,8 +139,8 @@ void ChainSolver::apply_inverse(double* x) const
     substitute(x);
 }
 
-/// From what the closing rows gave, which stands in work_.front: carried, far, border. Back along the elements,
-/// with their own unknowns behind.
+/// From what the closing rows gave, which stands in work_.front: carried, far, border. Back along the
+/// elements, with their own unknowns behind.
 void ChainSolver::substitute(double* x) const
 {
     const int far = links_.back().n_far, last = n_links() - 1;

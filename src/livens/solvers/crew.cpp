@@ -248,7 +248,8 @@ bool in_order_behind(const LoopInOrder& loop, const std::function<void(int, int)
     return !turns.is_over();
 }
 
-/// The first slot has the last items, the others one after the other of those before, so that none waits long.
+/// The first slot has the last items, the others one after the other of those before, so that none waits
+/// long.
 void in_order_ahead(const LoopInOrder& loop, const std::function<void(int)>& first,
                     const std::function<void(int, int)>& work)
 {

@@ -64,8 +64,8 @@ void for_each_item(int n, int least, const Work& work)
 /// A loop of which a part goes from item to item, which one thread does while others are at the rest.
 struct LoopInOrder {
     int n = 0;
-    int least = 1;       ///< as of in_shares()
-    double in_turn = 0;  ///< what the part in order costs of the other one, about: that thread has less of the other
+    int least = 1;   ///< as of in_shares()
+    double in_turn = 0;   ///< cost of the part in order over that of the other one, of which its thread has less
 };
 
 /// Calls work(slot, i) of all items, and then(i) in their order, each behind the work of its item. Ends where

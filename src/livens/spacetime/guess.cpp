@@ -151,8 +151,9 @@ Guess guess_between(const State& first, const State& last)
 
 namespace {
 
-/// Of many instants every fourth and the last, with those at which loads jump: elements of a march, which takes
-/// time from start to end while all else is shared among threads. Where they are too long they are divided.
+/// Of many instants every fourth and the last, with those at which loads jump: elements of a march, which
+/// takes time from start to end while all else is shared among threads. Where they are too long they are
+/// divided.
 std::vector<double> instants_of_march(const Model& model, std::span<const double> times)
 {
     constexpr std::size_t many = 200, joined = 4;
@@ -172,7 +173,8 @@ Guess march_from(const Model& model, const State& near, const GuessMesh& mesh, b
     std::vector<double> march = instants_of_march(model, mesh.times);
     if (!from_start) std::reverse(march.begin(), march.end());
     const bool is_joined = march.size() < mesh.times.size();
-    return guess_from_state(model, near, march, mesh.degree, is_joined ? fine : acceptable_velocity_jump).motion;
+    return guess_from_state(model, near, march, mesh.degree, is_joined ? fine : acceptable_velocity_jump)
+        .motion;
 }
 
 /// How far a motion misses what is known at an end, in lengths, radians, or momenta of some speed.

@@ -14,8 +14,8 @@
 namespace livens::inline spacetime_internal {
 
 /// From a state along the given instants, which rise or fall from its own: a march of lobatto(degree) over
-/// them, dividing elements whose velocity jump is above `velocity_jump`, and where that fails straight on from
-/// its last good element.
+/// them, dividing elements whose velocity jump is above `velocity_jump`, and where that fails straight on
+/// from its last good element.
 struct MarchGuess {
     Guess motion;
     double reached = 0;      ///< s; the last instant if all went well

@@ -136,8 +136,8 @@ struct FoundNumbers {
 
 struct Problem {
     Conditions conditions;
-    /// A motion that is about right, for conditions at both ends; empty: one is made from the conditions. With
-    /// SolveOptions::threads it is called by any of them, by one at a time.
+    /// A motion that is about right, for conditions at both ends; empty: one is made from the conditions.
+    /// With SolveOptions::threads it is called by any of them, by one at a time.
     std::function<State(double t)> guess{};
     /// A motion of the same bodies that is near: marches of lobatto(p) take it as their guess where their
     /// elements are its own. Must outlive the solution. Null: there is none.
@@ -156,4 +156,4 @@ struct Problem {
     bool ends_by_events = true;
 };
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens

@@ -31,8 +31,8 @@ std::vector<double> instants(const TimeMesh& mesh, const Ends& ends, int first, 
 
 Proposals::Proposals(const Problem& problem, const NumberedProblem& numbered, const Method& method,
                      const Window& window, PlannedPhases* phases)
-    : model_(numbered.model()), problem_(problem), numbered_(numbered), mesh_(numbered.mesh()),
-      ends_(numbered.ends()), method_(method), window_(window), phases_(phases)
+    : model_(numbered.model()), problem_(problem), numbered_(numbered), ends_(numbered.ends()),
+      method_(method), window_(window), phases_(phases)
 {}
 
 WindowOptions::Proposal Proposals::operator()(int first, int last, int attempt)
@@ -45,7 +45,7 @@ WindowOptions::Proposal Proposals::operator()(int first, int last, int attempt)
         return {attempt > 0 ? Guess{} : guess_steady(state), false};
     if (attempt > 2 || (mixed == nullptr && last - first == 1)) return {};
     // Each attempt marches with elements a quarter as long as the one before.
-    const std::vector<double> times = instants(mesh_, ends_, first, last, 1 << (2 * attempt));
+    const std::vector<double> times = instants(numbered_.mesh(), ends_, first, last, 1 << (2 * attempt));
     MarchGuess march = guess_from_state(model_, state, times, mixed ? mixed->witness().degree : 2);
     return {std::move(march.motion), march.is_closed};
 }
@@ -92,7 +92,7 @@ int Proposals::degree() const
 const Ends& Proposals::guessed_ends()
 {
     if (!ends_.has_components()) return ends_;
-    if (!guessed_) guessed_ = ends_for_guesses(model_, ends_, mesh_.ends);
+    if (!guessed_) guessed_ = ends_for_guesses(model_, ends_, numbered_.mesh().ends);
     return *guessed_;
 }
 

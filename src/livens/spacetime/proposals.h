@@ -30,22 +30,21 @@ public:
 private:
     Guess between_ends();
     int degree() const;
-    GuessMesh guess_mesh() const { return {mesh_.ends, degree()}; }
+    GuessMesh guess_mesh() const { return {numbered_.mesh().ends, degree()}; }
     const Ends& guessed_ends();
 
     const Model& model_;
     const Problem& problem_;
     const NumberedProblem& numbered_;
-    const TimeMesh& mesh_;
     const Ends& ends_;
     const Method& method_;
     const Window& window_;
-    PlannedPhases* phases_;         // or null
-    std::optional<Ends> guessed_;   // of conditions by component
-    std::vector<GuessFromEnds> plain_;   // of the turns that were needed so far
+    PlannedPhases* phases_;                               // or null
+    std::optional<Ends> guessed_;                         // of conditions by component
+    std::vector<GuessFromEnds> plain_;                    // of the turns that were needed so far
     std::optional<std::vector<GuessFromEnds>> nearest_;   // made where plain ones fail
-    int turn_ = 0, n_plain_ = 0;      // turns and guesses so far
-    int lead_ = 0, n_curves_ = 0;     // marches that were led, and curves
+    int turn_ = 0, n_plain_ = 0;                          // turns and guesses so far
+    int lead_ = 0, n_curves_ = 0;                         // marches that were led, and curves
     std::string told_;
 };
 

@@ -171,17 +171,12 @@ TEST_P(LoopsInOrder, ThrowWhatIsThrown)
         return true;
     };
     const auto nothing = [](int, int) {};
-    EXPECT_THROW(in_order_behind(
-                     loop(n_items), [&](int, int i) { refuse(i); }, see),
-                 std::runtime_error);
+    EXPECT_THROW(in_order_behind(loop(n_items), [&](int, int i) { refuse(i); }, see), std::runtime_error);
     EXPECT_LT(last, 12) << "what follows came before its work";
     EXPECT_THROW(in_order_behind(loop(n_items), nothing, refuse), std::runtime_error);
-    EXPECT_THROW(in_order_ahead(
-                     loop(n_items), [&](int i) { refuse(i); }, nothing),
-                 std::runtime_error);
-    EXPECT_THROW(in_order_ahead(
-                     loop(n_items), [](int) {}, [&](int, int i) { refuse(i); }),
-                 std::runtime_error);
+    EXPECT_THROW(in_order_ahead(loop(n_items), [&](int i) { refuse(i); }, nothing), std::runtime_error);
+    EXPECT_THROW(
+        in_order_ahead(loop(n_items), [](int) {}, [&](int, int i) { refuse(i); }), std::runtime_error);
     int n = 0;   // and the crew goes on
     in_shares(100, 100, [&](int, int begin, int end) { n += end - begin; });
     EXPECT_EQ(n, 100);

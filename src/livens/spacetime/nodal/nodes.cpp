@@ -322,8 +322,7 @@ bool Nodes::constrain(const WindowLayout& layout, bool same_choices)
         [&](int e) {
             for_nodes(e, [&](int B) {
                 const double* changes = phi_.data() + (e * degree + B) * tables_.rank;
-                add_violations(
-                    e, B, [changes](int c, int, bool) { return changes[c]; }, sum);
+                add_violations(e, B, [changes](int c, int, bool) { return changes[c]; }, sum);
             });
             return true;
         });
