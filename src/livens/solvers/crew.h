@@ -61,11 +61,11 @@ void for_each_item(int n, int least, const Work& work)
     });
 }
 
-/// A loop of which a part goes from item to item, which one thread does while others are at the rest.
+/// A loop of which a part goes from item to item: one thread does it, and has less of the rest than others.
 struct LoopInOrder {
     int n = 0;
     int least = 1;   ///< as of in_shares()
-    double in_turn = 0;   ///< cost of the part in order over that of the other one, of which its thread has less
+    double in_turn = 0;   ///< what the part in order costs over the rest
 };
 
 /// Calls work(slot, i) of all items, and then(i) in their order, each behind the work of its item. Ends where
