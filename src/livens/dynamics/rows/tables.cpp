@@ -68,7 +68,9 @@ double ModelTables::scaled_gradient(int r, const double* X, const double* maps, 
                                     double* out) const
 {
     const RowTable& table = rows[r];
-    for (int i = 0; i < n_twists; ++i) out[i] = 0;
+    int n_own = 0;   // which are set below
+    for (const int b : table.bodies) n_own += bodies[b].dofs;
+    if (n_own < n_twists) std::fill_n(out, n_twists, 0.0);
     double square = 0;
     for (int side = 0; side < table.n_sides; ++side) {
         const BodyTable& body = bodies[table.bodies[side]];
