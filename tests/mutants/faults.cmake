@@ -1663,8 +1663,8 @@ livens_mutant(NAME rounding_forgets_a_factor
 # Of many marches nobody asks which is the nearest.
 livens_mutant(NAME any_march_is_the_nearest
               FILE spacetime/guess.cpp
-              OLD [[all.push_back({factor, missing(model, march_with(factor), far, given)});]]
-              NEW [[all.push_back({factor, 1.0});]]
+              OLD [[all[i] = {factor, missing(model, march_with(factor), far, given)};]]
+              NEW [[all[i] = {factor, 1.0};]]
               TESTS_OF unit_spacetime
               MUST_FAIL Guess.FromManySizesOfRatesArrivesNearest)
 
@@ -1932,6 +1932,22 @@ livens_mutant(NAME violations_before_those_of_the_nodes_before
               NEW [[if (is_shared || !is_shared) return std::isfinite(sum);]]
               TESTS_OF unit_spacetime
               MUST_FAIL Threads.LeaveNoTraceInTheBitsOfMotions)
+
+# What goes from item to item does not wait for the threads that have the items.
+livens_mutant(NAME what_follows_does_not_wait
+              FILE solvers/crew.cpp
+              OLD [[if (!turns.await(i) || !then(i)) return turns.break_off();]]
+              NEW [[if (!then(i)) return turns.break_off();]]
+              TESTS_OF unit_solvers
+              MUST_FAIL Crew/LoopsInOrder.WhatFollowsComesBehindItsWork*)
+
+# What a solution leaves of the rows that two elements share is that of the later one alone.
+livens_mutant(NAME residuals_of_one_element
+              FILE solvers/chain_solution.cpp
+              OLD [[if (e > 0) take_rows(e - 1, far_rows(e - 1), matrix_.n_rows(e - 1));]]
+              NEW [[if (e < 0) take_rows(e, 0, 0);]]
+              TESTS_OF unit_solvers
+              MUST_FAIL All/LinearSolvers.EqualADenseSolution/*)
 
 # Values behind elements that were left out are put where they would stand if time was shorter.
 livens_mutant(NAME matrices_drawn_out_without_values
