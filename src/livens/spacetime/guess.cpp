@@ -156,8 +156,7 @@ namespace {
 /// divided.
 std::vector<double> instants_of_march(const Model& model, std::span<const double> times)
 {
-    constexpr std::size_t many = 200, joined = 4;
-    if (times.size() <= many) return {times.begin(), times.end()};
+    constexpr std::size_t joined = 4;
     const std::vector<double> breaks = model.load_breaks();
     std::vector<double> found;
     for (std::size_t i = 0; i < times.size(); ++i)
@@ -166,14 +165,24 @@ std::vector<double> instants_of_march(const Model& model, std::span<const double
     return found;
 }
 
+}   // namespace
+
+MarchGuess guess_over_many(const Model& model, const State& state, std::span<const double> times, int degree)
+{
+    constexpr double fine = 1e-6;   // velocity jump, of a motion that may have all of its digits
+    return guess_from_state(model, state, instants_of_march(model, times), degree, fine);
+}
+
+namespace {
+
 /// The march from a state that is complete, stated or guessed, at the near end.
 Guess march_from(const Model& model, const State& near, const GuessMesh& mesh, bool from_start)
 {
-    constexpr double fine = 1e-6;   // velocity jump, of a motion that may have all of its digits
-    std::vector<double> march = instants_of_march(model, mesh.times);
+    std::vector<double> march(mesh.times.begin(), mesh.times.end());
     if (!from_start) std::reverse(march.begin(), march.end());
-    const bool is_joined = march.size() < mesh.times.size();
-    return guess_from_state(model, near, march, mesh.degree, is_joined ? fine : acceptable_velocity_jump)
+    const bool are_many = march.size() > many_instants;
+    return (are_many ? guess_over_many(model, near, march, mesh.degree)
+                     : guess_from_state(model, near, march, mesh.degree))
         .motion;
 }
 

@@ -23,6 +23,11 @@ struct MarchGuess {
 };
 MarchGuess guess_from_state(const Model& model, const State& state, std::span<const double> times,
                             int degree = 2, double velocity_jump = acceptable_velocity_jump);
+/// The same over a fine mesh, of whose elements several are one of the march; those that are too long are
+/// divided.
+MarchGuess guess_over_many(const Model& model, const State& state, std::span<const double> times, int degree);
+/// So many instants that it serves.
+inline constexpr std::size_t many_instants = 200;
 
 /// Points and directors going on steadily from a state.
 Guess guess_steady(const State& state);

@@ -46,7 +46,9 @@ WindowOptions::Proposal Proposals::operator()(int first, int last, int attempt)
     if (attempt > 2 || (mixed == nullptr && last - first == 1)) return {};
     // Each attempt marches with elements a quarter as long as the one before.
     const std::vector<double> times = instants(numbered_.mesh(), ends_, first, last, 1 << (2 * attempt));
-    MarchGuess march = guess_from_state(model_, state, times, mixed ? mixed->witness().degree : 2);
+    const bool are_many = mixed == nullptr && attempt == 0 && times.size() > many_instants;
+    MarchGuess march = are_many ? guess_over_many(model_, state, times, degree())
+                                : guess_from_state(model_, state, times, mixed ? mixed->witness().degree : 2);
     return {std::move(march.motion), march.is_closed};
 }
 

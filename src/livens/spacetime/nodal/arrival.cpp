@@ -3,7 +3,6 @@
 #include "livens/spacetime/nodal/arrival.h"
 
 #include <algorithm>
-#include <memory>
 #include <vector>
 
 #include "livens/solvers/crew.h"
@@ -73,18 +72,18 @@ FlowDerivative flow_derivative(const ModelTables& tables, const TimeMesh& mesh, 
     const WindowLayout layout = open_layout(tables, mesh, rule);
     NodalSystem system(tables, rule);
     if (f == 0 || !place(system, tables, layout, motion)) return {};
-    const std::unique_ptr<Elimination> whole = null_space_elimination(tables, layout, chain_solver());
-    whole->begin(layout, system.nodes());
-    system.form_tangent(*whole);
-    whole->close_with(rows_of_a_state(f), DenseMatrix());
-    if (!whole->factorise()) return {};
+    Elimination& whole = *system.elimination();
+    whole.begin(layout, system.nodes());
+    system.form_tangent(whole);
+    whole.close_with(rows_of_a_state(f), DenseMatrix());
+    if (!whole.factorise()) return {};
     const int last = layout.n_nodes() - 1;
     FlowDerivative flow{DenseMatrix(n, f), DenseMatrix(n, f)};
     for (int j = 0; j < f; ++j) {
         std::vector<double> conditions(2 * static_cast<std::size_t>(f), 0.0),
             own(static_cast<std::size_t>(n), 0.0), y(own);
         conditions[static_cast<std::size_t>(f + j)] = 1;
-        whole->last_twist(conditions, y.data());
+        whole.last_twist(conditions, y.data());
         tables.bodies.to_twist(system.nodes().maps(last), y.data(), flow.arrival.column(j).data());
         // a momentum along a free motion is a velocity along it
         own[tables.rank + j] = 1;

@@ -58,11 +58,11 @@ std::unique_ptr<Elimination> NodalSystem::on_null_spaces() const
 
 bool NodalSystem::settle()
 {
+    if (elimination_ == nullptr) choose_elimination();
     in_use_ = pending_ = false;
     correction_ = 0;
     if (!nodes_.constrain(layout_, false)) return false;
     if (!layout_.is_march()) return pull(true);
-    if (elimination_ == nullptr) choose_elimination();
     for (int round = 0; round < 6; ++round) {
         pending_ = nodes_.is_near() && elimination_->takes_constraints();
         correction_ = 0;
