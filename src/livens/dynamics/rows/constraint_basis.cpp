@@ -25,19 +25,10 @@ double ConstraintBasis::fill(const ModelTables& tables, int column, int row, Ins
     double* out = q.column(column);
     tables.rows.gradient(row, at, X, g);
     const double square = tables.scaled_gradient(row, X, maps, g, out);
-    // Of few bodies their entries alone.
-    const RowTable& table = tables.rows[row];
     // A row without a gradient stays zero: its pivot then says that rank is lost.
     const double scale = square > 0 ? 1 / std::sqrt(square) : 1;
-    int first = tables.n_twists, end = 0;
-    for (const int b : table.bodies) {
-        const BodyTable& body = tables.bodies[b];
-        first = std::min(first, body.first);
-        end = std::max(end, body.first + body.dofs);
-        double* const own = out + body.first;
-        for (int i = 0; i < 3; ++i) own[i] *= scale;
-        for (int i = 3; i < 6 && body.dofs == 6; ++i) own[i] *= scale;
-    }
+    const auto [first, end] = tables.reaches[row];
+    for (int i = first; i < end; ++i) out[i] *= scale;
     q.reach_of(column, first, end);
     return scale;
 }

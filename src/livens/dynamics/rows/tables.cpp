@@ -32,7 +32,15 @@ ModelTables::ModelTables(const Model& the_model, std::vector<int> rows_to_solve,
       length(the_model.length()), n_twists(bodies.n_twists()), independent(std::move(rows_to_solve)),
       rank(static_cast<int>(independent.size())),
       known_pattern(known != nullptr ? std::move(known) : std::make_shared<KnownPattern>())
-{}
+{
+    for (const RowTable& table : rows) {
+        auto& [first, end] = reaches.emplace_back(std::array{n_twists, 0});
+        for (const int b : table.bodies) {
+            first = std::min(first, bodies[b].first);
+            end = std::max(end, bodies[b].first + bodies[b].dofs);
+        }
+    }
+}
 
 void ModelTables::wrench(int r, int side, const double* X, const double* maps, const double* g,
                          double* q) const

@@ -39,6 +39,7 @@ struct ModelTables {
     int n_twists;                   ///< six a body and three a point mass
     std::vector<int> independent;   ///< rows that are solved for, until choose_rows() finds them unfit
     int rank = 0;                   ///< how many they are
+    std::vector<std::array<int, 2>> reaches;   ///< of rows: their first twist, and behind their last one
     std::shared_ptr<KnownPattern> known_pattern;
 
     int n_bodies() const { return bodies.n_bodies(); }
