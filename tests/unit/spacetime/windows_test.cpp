@@ -408,6 +408,50 @@ TEST(Guess, FromBothEndsMeetsWhatIsKnown)
     EXPECT_LT(norm(moving(0.15).X[0] - march(0.15).X[0]), norm(still(0.15).X[0] - march(0.15).X[0]));
 }
 
+/// Marches are made from the end that moves, and from the other one where it is asked for more.
+TEST(Guess, EndsOfTimeTakeTurns)
+{
+    const Model model = testing_models::two_bricks();
+    const std::vector<double> times{0, 0.1, 0.2, 0.3};
+    Ends ends;
+    ends.at_start = ends.at_end = Known::positions;
+    ends.start = ends.end = model.start();
+    ends.end.t = 0.3;
+    const auto from_starts = [&] {
+        std::vector<int> found;
+        for (int turn = 0;; ++turn) {
+            const std::vector<GuessFromEnds> guesses = guesses_from_ends(model, ends, {times}, turn);
+            if (guesses.empty()) return found;
+            for (const GuessFromEnds& guess : guesses) found.push_back(guess.from_start ? 1 : 0);
+        }
+    };
+    using Turns = std::vector<int>;
+    EXPECT_EQ(from_starts(), Turns{1}) << "a steady motion, since nothing moves";
+    ends.end.V[1] = rate(ends.end.X[1], {0, 0, 0}, {0.1, 0, 0});
+    EXPECT_EQ(from_starts(), Turns{0});
+    ends.start.V = ends.end.V;
+    EXPECT_EQ(from_starts(), (Turns{1, 0}));
+    for (Matrix34& V : ends.start.V) V = {};
+    ends.at_end = Known::momenta;
+    EXPECT_EQ(from_starts(), (Turns{0, 1, 1})) << "what moves, then let go at rest or with the other's rates";
+}
+
+/// Elements that are long for the motion are divided, so that it arrives where one over all of them does.
+TEST(Guess, OfManyInstantsIsAsGoodWithFewerElements)
+{
+    const Model model = testing_models::two_bricks();
+    for (const double duration : {0.5, 12.0}) {
+        std::vector<double> times;
+        for (int i = 0; i <= 240; ++i) times.push_back(duration * i / 240);
+        const Guess many = guess_from_state(model, model.start(), times, 6).motion;
+        const Guess fewer = guess_over_many(model, model.start(), times, 6).motion;
+        double off = 0;
+        for (const double t : times)
+            off = std::max(off, distance_between(fewer(t).X, many(t).X, model.length()));
+        EXPECT_LT(off, 1e-6) << "over " << duration << " s";
+    }
+}
+
 /// Of rates that are stated much too small.
 TEST(Guess, FromManySizesOfRatesArrivesNearest)
 {
