@@ -207,26 +207,33 @@ void reflect_rows(double* z, int n, double beta, const double* v, int rows)
     for (; c < n; ++c) reflect_columns<double>(z + c, n, beta, v, rows);
 }
 
+/// A sum is no number where one of its terms is none; infinite ones are the largest themselves.
 double largest(const double* x, int n)
 {
-    Held most{}, none{};   // the second is zero while all are finite
+    const auto larger = [](Held most, Held v) {
+        const Held size = v > -v ? v : -v;
+        return size > most ? size : most;
+    };
+    Held most{}, other{}, sum{};
     double found = 0, left = 0;
     int i = 0;
-    for (; i + held <= n; i += held) {
-        const Held v = at(x + i), size = v > -v ? v : -v;
-        most = size > most ? size : most;
-        none += v - v;
+    for (; i + 2 * held <= n; i += 2 * held) {
+        const Held v = at(x + i), w = at(x + i + held);
+        most = larger(most, v);
+        other = larger(other, w);
+        sum += v + w;
     }
+    most = other > most ? other : most;
     for (; i < n; ++i) {
         const double size = x[i] > -x[i] ? x[i] : -x[i];
         found = size > found ? size : found;
-        left += x[i] - x[i];
+        left += x[i];
     }
     for (int k = 0; k < held; ++k) {
         found = most[k] > found ? most[k] : found;
-        left += none[k];
+        left += sum[k];
     }
-    return left == 0 ? found : __builtin_inf();
+    return left == left ? found : __builtin_inf();
 }
 
 constexpr RowFunctions in_registers{inner,           subtract_scaled, reflect,     subtract_pair,
