@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "livens/spacetime/guess.h"
+#include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/march/windows.h"
 #include "unit/spacetime/mechanisms.h"
 
