@@ -234,7 +234,8 @@ void Pairs::close()
     const RowFunctions& rows = row_functions();
     const double* z = all_.z_.data() + all_.place(A_);
     double* to = all_.matrix_.block(e_, place_of_row(*all_.layout_, A_), B_);
-    for (int i = 0; i < f; ++i, to += all_.matrix_.stride(e_)) {
+    const int stride = all_.matrix_.stride(e_);
+    for (int i = 0; i < f; ++i, to += stride) {
         rows.product(row_.data(), {z + i, f, product_.data(), f, all_.tables_.n_twists}, f);
         subtract_scaled(to, -1, row_.data(), f);
     }
