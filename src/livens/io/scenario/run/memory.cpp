@@ -72,15 +72,15 @@ double condition_bytes(const Model& model, const Method& method, double n_elemen
 }
 
 /// Conditions at both ends take one window of all elements, and its condition number, which tells whether
-/// they determine the motion; those of a second solution are of one degree more; and the
-/// derivative of the arrival, whose matrix has a border. Free bodies (1 to 6) and
-/// chains of 1 to 8 hinges, degrees 1 to 4, took what follows within a quarter.
+/// they determine the motion; those of a second solution are of one degree more; and the derivative of the
+/// arrival, whose matrix has a border. Free bodies (1 to 6) and chains of 1 to 8 hinges, degrees 1 to 6, took
+/// what follows within a sixth.
 double both_ends_bytes(const Model& model, const Lobatto& lobatto, double n_elements, bool is_estimated)
 {
     double twists = 0;
     for (const Body& body : model.bodies()) twists += body.is_point ? 3 : 6;
     const double f = std::max(twists - model.n_rows(), 1.0), p = lobatto.degree + (is_estimated ? 1 : 0);
-    return n_elements * p * (twists * (600 + 24 * twists) + (160 + 18 * p) * f * f + 550 * f + 1000);
+    return n_elements * p * (twists * (400 + 16 * twists) + (140 + 12 * p) * f * f + 200 * f + 500);
 }
 
 /// Of the factors of one block's matrix, which outweigh all else.
