@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "block_systems.h"
+#include "livens/solvers/crew.h"
 #include "livens/solvers/linear_solver.h"
 
 namespace livens {
@@ -297,6 +298,33 @@ TEST(ChainSolver, IsAsGoodAsSparseFactors)
             }
     }
     EXPECT_GE(n_backends, 1);
+}
+
+/// Factors, solutions and transposed ones, with conditions that see both ends and with borders.
+TEST(ChainSolver, HasTheSameBitsForAnyNumberOfThreads)
+{
+    for (const auto& [n_border, n_open] : {std::pair{0, 0}, {0, 4}, {3, 4}}) {
+        const BlockStructure s = bordered(uniform(41, 3, 4), n_border, n_open);
+        std::vector<Values> found;
+        for (const int threads : {1, 2, 3, 7}) {
+            const Crew crew(threads);
+            BlockMatrix matrix;
+            matrix.resize(s);
+            fill(s, 11, matrix);
+            const auto solver = chain_solver();
+            solver->analyse(s);
+            ASSERT_EQ(solver->factorise(matrix), Outcome::regular);
+            Values x = Random(5).values(size_of(s)), y = x;
+            solver->solve(x);
+            solver->solve_transposed(y);
+            const LinearReport report = solver->report();
+            x.insert(x.end(), y.begin(), y.end());
+            x.push_back(report.smallest_pivot);
+            x.push_back(report.largest_entry);
+            found.push_back(x);
+        }
+        for (const Values& of : found) EXPECT_EQ(of, found.front()) << n_border << ", " << n_open;
+    }
 }
 
 /// Of conditions alone the ends are had without what is between them.
