@@ -234,12 +234,12 @@ void ChainSolver::eliminate_transposed(const Link& link, const double* x) const
 void ChainSolver::apply_inverse_transposed(double* x) const
 {
     if (n_links() == 0) return;
-    auto& [right_side, front, passed, others, carried, of_border, near] = work_;
+    Values& front = work_.front;
     const int behind = first_unknown_.back(), n_closing = structure_->n_closing;
-    carried.assign(x, x + n_carried_);
-    of_border.assign(x + behind, x + behind + border());
-    near.clear();
-    passed.clear();
+    work_.carried.assign(x, x + n_carried_);
+    work_.of_border.assign(x + behind, x + behind + border());
+    work_.near.clear();
+    work_.passed.clear();
     in_order_behind(
         in_order(cost_of_pass),
         [&](int, int e) { eliminate_own_transposed(links_[static_cast<std::size_t>(e)], x); },
@@ -247,8 +247,8 @@ void ChainSolver::apply_inverse_transposed(double* x) const
             eliminate_transposed(links_[static_cast<std::size_t>(e)], x);
             return true;
         });
-    front = carried;
-    for (const Values* v : {&near, &of_border}) front.insert(front.end(), v->begin(), v->end());
+    front = work_.carried;
+    for (const Values* v : {&work_.near, &work_.of_border}) front.insert(front.end(), v->begin(), v->end());
     closing_.solve_transposed(front.data(), nullptr);
     closing_.apply_transposed(front.data());
     std::copy(front.end() - n_closing, front.end(), x + first_row_.back());
