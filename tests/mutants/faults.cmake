@@ -880,7 +880,7 @@ livens_mutant(NAME ranks_believed
 # What both ends take of memory, without their condition number.
 livens_mutant(NAME both_ends_unstated
               FILE io/scenario/run/memory.cpp
-              OLD [[(160 + 18 * p) * f * f + 550 * f + 1000)]]
+              OLD [[(140 + 12 * p) * f * f + 200 * f + 500)]]
               NEW [[0 * f)]]
               TESTS_OF livens
               MUST_FAIL stop_test.MemoryStated.test_conditions_at_both_ends_are_in_what_check_says)
