@@ -36,7 +36,7 @@ double ConstraintBasis::fill(const ModelTables& tables, int column, int row, Ins
 double ConstraintBasis::build(const ModelTables& tables, Instant at, const double* X, const double* maps,
                               const std::vector<int>& which, bool keep_choices)
 {
-    std::copy_n(which.begin(), tables.rank, rows.begin());
+    rows = which;
     for (int c = 0; c < tables.rank; ++c) row_scale[c] = fill(tables, c, which[c], at, X, maps);
     return smallest_pivot = q.factorise(tables.rank, keep_choices);
 }
