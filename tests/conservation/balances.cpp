@@ -6,7 +6,7 @@
 #include "livens/time/quadrature.h"
 #include "mechanisms.h"
 
-namespace livens::tests {
+namespace livens::tests::balances_test {
 namespace {
 
 struct LongRun {
@@ -238,4 +238,4 @@ TEST(Lobatto, BalancesEnergyWithTheWorkOfLoads)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::balances_test

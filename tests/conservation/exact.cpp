@@ -4,7 +4,7 @@
 
 #include "mechanisms.h"
 
-namespace livens::tests {
+namespace livens::tests::exact_test {
 namespace {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
@@ -76,4 +76,4 @@ TEST(Lobatto, ReproducesSteadySpin)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::exact_test

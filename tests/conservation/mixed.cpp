@@ -5,7 +5,7 @@
 #include "livens/time/quadrature.h"
 #include "mixed_problems.h"
 
-namespace livens::tests {
+namespace livens::tests::mixed_test {
 namespace {
 
 /// |L(1 s) - torque times 1 s| of free_box().
@@ -278,4 +278,4 @@ TEST(MixedConditions, ThatMakeNoSolvableSystemAreRefused)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::mixed_test

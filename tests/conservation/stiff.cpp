@@ -6,7 +6,7 @@
 
 #include "mechanisms.h"
 
-namespace livens::tests {
+namespace livens::tests::stiff_test {
 namespace {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
@@ -252,4 +252,4 @@ TEST(TurningSprings, BetweenRigidBodiesAreNamed)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::stiff_test

@@ -2,7 +2,7 @@
 // Stiff springs released: the first guess may lie far off, the solution does not.
 #include "mechanisms.h"
 
-namespace livens::tests {
+namespace livens::tests::stretched_test {
 namespace {
 
 /// 1 kg released with its spring stretched, in elements of 0.05 s.
@@ -46,4 +46,4 @@ TEST(Stretched, SpringsWithAFreeLengthConverge)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::stretched_test

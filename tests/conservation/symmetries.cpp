@@ -2,7 +2,7 @@
 // The motion does not depend on how the mechanism is described, and runs backwards as well as forwards.
 #include "mechanisms.h"
 
-namespace livens::tests {
+namespace livens::tests::symmetries_test {
 namespace {
 
 // Tips and long axes to 1e-11. The roll of a brick about its long axis, with a hundredth of the other
@@ -144,4 +144,4 @@ TEST(Lobatto, MovesAlikeAtAnyTimeOfDay)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::symmetries_test

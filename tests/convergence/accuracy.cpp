@@ -7,7 +7,7 @@
 #include "livens/base/error.h"
 #include "newton_euler.h"
 
-namespace livens::tests {
+namespace livens::tests::accuracy_test {
 namespace {
 
 /// A model, and what tells its true states.
@@ -356,4 +356,4 @@ TEST(Accuracy, StopsAsAsked)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::accuracy_test

@@ -7,7 +7,7 @@
 #include "livens/base/error.h"
 #include "newton_euler.h"
 
-namespace livens::tests {
+namespace livens::tests::accuracy_ends_test {
 namespace {
 
 Model hinged_brick()
@@ -291,4 +291,4 @@ TEST(AccuracyBetweenEnds, TakesLobattoAndNothingElse)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::accuracy_ends_test

@@ -6,7 +6,7 @@
 #include "convergence/studies.h"
 #include "livens/dynamics/start/consistent_start.h"
 
-namespace livens::tests {
+namespace livens::tests::arrival_test {
 namespace {
 
 struct Between {
@@ -119,4 +119,4 @@ TEST(Arrival, IsNotAskedOfMarches)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::arrival_test

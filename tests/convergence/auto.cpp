@@ -5,7 +5,7 @@
 #include "convergence/studies.h"
 #include "livens/base/error.h"
 
-namespace livens::tests {
+namespace livens::tests::auto_test {
 namespace {
 
 /// 1 kg on a spring of 1 m with stiffness k and damping c, released at 0.5 rad, stretched, in the field of
@@ -181,4 +181,4 @@ TEST(AutomaticFamily, NeedsAnAccuracy)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::auto_test

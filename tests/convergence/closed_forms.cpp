@@ -5,7 +5,7 @@
 
 #include "convergence/studies.h"
 
-namespace livens::tests {
+namespace livens::tests::closed_forms_test {
 namespace {
 
 /// Jacobi's sn, cn and dn by the arithmetic-geometric mean [AbramowitzStegun1964, 16.4].
@@ -140,4 +140,4 @@ TEST(ClosedForms, AFastHeavyTopByAnAccuracyAlone)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::closed_forms_test

@@ -11,7 +11,7 @@
 #include "livens/multibody/state_quantities.h"
 #include "livens/time/time_laws.h"
 
-namespace livens::tests {
+namespace livens::tests::components_test {
 namespace {
 
 using At = Condition::At;
@@ -375,7 +375,7 @@ TEST(Components, StandBesidePlacesOfAllBodies)
 /// Elements are found for an accuracy, as between places and momenta.
 TEST(Components, AreMetToAnAccuracy)
 {
-    for (const Sample& run : {links_run(), ::livens::tests::run("four-bar", four_bar(), 0.2, 1, 160)}) {
+    for (const Sample& run : {links_run(), ::livens::tests::components_test::run("four-bar", four_bar(), 0.2, 1, 160)}) {
         const bool is_loop = run.title == "four-bar";
         const std::vector<Condition> conditions =
             is_loop ? run.conditions({"crank shaft.angle_rate"}, {"rocker shaft.angle"})
@@ -517,4 +517,4 @@ TEST(Components, AreRefusedWhereTheyCannotBeSolvedFor)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::components_test

@@ -8,7 +8,7 @@
 #include "livens/multibody/joint_coordinates.h"
 #include "newton_euler.h"
 
-namespace livens::tests {
+namespace livens::tests::couplings_test {
 namespace {
 
 using std::numbers::pi;
@@ -276,4 +276,4 @@ TEST(Couplings, MixedRefusesWhatCountsTurns)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::couplings_test

@@ -7,7 +7,7 @@
 #include "livens/diagnostics/sample.h"
 #include "newton_euler.h"
 
-namespace livens::tests {
+namespace livens::tests::drives_test {
 namespace {
 
 /// mean + amplitude sin(rate t).
@@ -314,4 +314,4 @@ TEST(Drives, OtherMethodsRefuseThem)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::drives_test

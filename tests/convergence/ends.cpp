@@ -7,7 +7,7 @@
 #include "livens/base/error.h"
 #include "newton_euler.h"
 
-namespace livens::tests {
+namespace livens::tests::ends_test {
 namespace {
 
 template <typename L>
@@ -574,4 +574,4 @@ TEST(LobattoEnds, AFreeSphereThatHasTurnedOnceIsSingular)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::ends_test

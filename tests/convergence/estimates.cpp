@@ -5,7 +5,7 @@
 #include "convergence/studies.h"
 #include "livens/base/error.h"
 
-namespace livens::tests {
+namespace livens::tests::estimates_test {
 namespace {
 
 Solution solved(const Model& model, double end, int n, const Method& method)
@@ -265,4 +265,4 @@ TEST(Estimate, OfABallThatSpinsFiveRadiansAnElementIsNeverGoodAndWrong)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::estimates_test

@@ -2,7 +2,7 @@
 // Solutions that follow a motion nearby find what they find alone, sooner.
 #include "convergence/studies.h"
 
-namespace livens::tests {
+namespace livens::tests::following_test {
 namespace {
 
 SolveOptions quiet()
@@ -114,4 +114,4 @@ TEST(ReferencePredictor, TakesNothingFromOtherElementsAndOtherMotions)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::following_test

@@ -5,7 +5,7 @@
 #include "livens/multibody/joints/drives.h"
 #include "livens/time/time_laws.h"
 
-namespace livens::tests {
+namespace livens::tests::horizon_test {
 namespace {
 
 Solution with_growth(const Model& model, double end, int n, const Method& method)
@@ -480,4 +480,4 @@ TEST(Horizon, WhatIsDrivenDoesNotGrow)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::horizon_test

@@ -3,7 +3,7 @@
 #include "convergence/studies.h"
 #include "livens/time/basis.h"
 
-namespace livens::tests {
+namespace livens::tests::inside_test {
 namespace {
 
 /// Two bricks to 0.5 s, and a fine motion whose polynomials are good to 1e-12 everywhere: its degree is 12.
@@ -117,4 +117,4 @@ TEST(Lobatto, SamplesReactionsExactlyWithOrder2P)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::inside_test

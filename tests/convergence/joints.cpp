@@ -8,7 +8,7 @@
 #include "livens/diagnostics/sample.h"
 #include "livens/multibody/joints/spline_curve.h"
 
-namespace livens::tests {
+namespace livens::tests::joints_test {
 namespace {
 
 const Vector3 place{0.3, 0.1, -0.2}, along{0.48, 0.6, 0.64}, across{0.8, 0, -0.6};
@@ -203,4 +203,4 @@ TEST(EveryJoint, OfThemNoneDoesWork)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::joints_test

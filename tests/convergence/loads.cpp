@@ -4,7 +4,7 @@
 #include "livens/multibody/loads/surface_loads.h"
 #include "newton_euler.h"
 
-namespace livens::tests {
+namespace livens::tests::loads_test {
 namespace {
 
 struct Loaded {
@@ -197,4 +197,4 @@ TEST(LobattoLoads, HaveOrder2PWithTorquesThatVaryInTime)
 TEST(LobattoLoads, HaveOrder2PWithAllOfThemOnTwoBodies) { expect_order_2p(under_everything()); }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::loads_test

@@ -4,7 +4,7 @@
 #include "livens/base/error.h"
 #include "mixed_problems.h"
 
-namespace livens::tests {
+namespace livens::tests::mixed_ends_test {
 namespace {
 
 State at_rest(State state)
@@ -82,4 +82,4 @@ TEST(MixedEnds, MomentaAtBothEndsOfWhatIsFreeAreRefusedWithItsMotion)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::mixed_ends_test

@@ -3,7 +3,7 @@
 #include "convergence/studies.h"
 #include "mixed_problems.h"
 
-namespace livens::tests {
+namespace livens::tests::mixed_estimates_test {
 namespace {
 
 /// Largest error at all element ends, measured as estimates are: centres by the model's length, turns.
@@ -132,4 +132,4 @@ TEST(MixedEstimates, SeeJumpsInsideElements)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::mixed_estimates_test

@@ -3,7 +3,7 @@
 #include "convergence/studies.h"
 #include "mixed_problems.h"
 
-namespace livens::tests {
+namespace livens::tests::mixed_loads_test {
 namespace {
 
 /// A box under a torque of this course in time about (1, 1, 1), as large as makes it turn by radians.
@@ -121,4 +121,4 @@ TEST(StatedOrders, OfQuotientsWithUnequalWeightsAreNone)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::mixed_loads_test

@@ -2,7 +2,7 @@
 // Orders of the paper's elements on the free box under a constant torque, pairing by pairing.
 #include "mixed_problems.h"
 
-namespace livens::tests {
+namespace livens::tests::mixed_orders_test {
 namespace {
 
 struct Order {
@@ -141,4 +141,4 @@ TEST(MixedKnots, MayBeAnywhere)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::mixed_orders_test

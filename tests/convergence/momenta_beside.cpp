@@ -10,7 +10,7 @@
 #include "livens/multibody/state_quantities.h"
 #include "newton_euler.h"
 
-namespace livens::tests {
+namespace livens::tests::momenta_beside_test {
 namespace {
 
 using At = Condition::At;
@@ -194,4 +194,4 @@ TEST(MomentaBesideComponents, ThatAreTooManyOrTooFewAreRefused)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::momenta_beside_test

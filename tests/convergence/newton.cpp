@@ -2,7 +2,7 @@
 // What a solution costs: iterations and factorisations.
 #include "mechanisms.h"
 
-namespace livens::tests {
+namespace livens::tests::newton_test {
 namespace {
 
 Solution two_bricks_to_2(int degree, double h, double tolerance)
@@ -77,4 +77,4 @@ TEST(Newton, FactorisesOnceAnElementWhereErrorsAreSmall)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::newton_test

@@ -2,7 +2,7 @@
 // Position and velocity at element ends converge with order 2p.
 #include "convergence/studies.h"
 
-namespace livens::tests {
+namespace livens::tests::orders_test {
 namespace {
 
 /// Errors below this many gaps between two fine motions are left out of a rate: one part in 50 moves a rate
@@ -50,12 +50,12 @@ struct Case {
     void expect_order(int degree, const std::vector<int>& n, double tolerance,
                       std::size_t refinements = 4) const
     {
-        tests::expect_order(lobatto_study(model, end, reference, degree, n), reference, degree, tolerance,
+        tests::orders_test::expect_order(lobatto_study(model, end, reference, degree, n), reference, degree, tolerance,
                             refinements);
     }
     void expect_slope(int degree, const std::vector<int>& n) const
     {
-        tests::expect_slope(lobatto_study(model, end, reference, degree, n), reference, degree);
+        tests::orders_test::expect_slope(lobatto_study(model, end, reference, degree, n), reference, degree);
     }
 };
 
@@ -199,4 +199,4 @@ TEST(Lobatto, ConvergesWithOrder2PAcrossAJumpOfTheLoad)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::orders_test

@@ -7,7 +7,7 @@
 #include "livens/multibody/state_quantities.h"
 #include "livens/time/time_laws.h"
 
-namespace livens::tests {
+namespace livens::tests::periodic_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -144,4 +144,4 @@ TEST(Periodic, AnotherPeriodOfWhatDrivesIsSuspect)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::periodic_test

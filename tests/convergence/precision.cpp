@@ -4,7 +4,7 @@
 
 #include "mechanisms.h"
 
-namespace livens::tests {
+namespace livens::tests::precision_test {
 namespace {
 
 using Tips = std::array<Vector3, 2>;
@@ -95,4 +95,4 @@ TEST(Lobatto, AgreesWithTheExtrapolatedMidpointRuleOnARedundantLoop)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::precision_test

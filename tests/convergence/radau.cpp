@@ -4,7 +4,7 @@
 
 #include "convergence/studies.h"
 
-namespace livens::tests {
+namespace livens::tests::radau_test {
 namespace {
 
 Solution solve_radau(const Model& model, double end, int n, int degree, const SolveOptions& options = {})
@@ -296,4 +296,4 @@ TEST(Lobatto, TellsTheErrorOfAnElementByItsVelocityJump)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::radau_test

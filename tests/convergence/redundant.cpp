@@ -6,7 +6,7 @@
 #include "livens/time/time_laws.h"
 #include "mechanisms.h"
 
-namespace livens::tests {
+namespace livens::tests::redundant_test {
 namespace {
 
 /// An arm that turns about a world axis carries a bob on a hinge: one joint, or a plane and a ball, which
@@ -92,4 +92,4 @@ TEST(RedundantRows, ThatDoContradictAreTold)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::redundant_test

@@ -13,7 +13,7 @@
 #include "livens/multibody/loads.h"
 #include "livens/multibody/state_quantities.h"
 
-namespace livens::tests {
+namespace livens::tests::released_test {
 namespace {
 
 using At = Condition::At;
@@ -426,4 +426,4 @@ TEST(PhasesBetweenEnds, WhatIsNotSolvedIsRefusedByName)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::released_test

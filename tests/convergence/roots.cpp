@@ -7,7 +7,7 @@
 #include "livens/base/error.h"
 #include "livens/multibody/state_quantities.h"
 
-namespace livens::tests {
+namespace livens::tests::roots_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -99,4 +99,4 @@ TEST(Roots, AreRefusedFromAState)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::roots_test

@@ -7,7 +7,7 @@
 #include "mechanisms.h"
 #include "parallelograms.h"
 
-namespace livens::tests {
+namespace livens::tests::singular_test {
 namespace {
 
 struct Turn {
@@ -288,4 +288,4 @@ TEST(SingularPositions, AreNoHindranceToAnAccuracy)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::singular_test

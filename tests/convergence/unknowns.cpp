@@ -8,7 +8,7 @@
 #include "livens/multibody/loads/load_laws.h"
 #include "livens/multibody/state_quantities.h"
 
-namespace livens::tests {
+namespace livens::tests::unknowns_test {
 namespace {
 
 using At = Condition::At;
@@ -196,4 +196,4 @@ TEST(UnknownNumbers, BeginAtZeroAndAtBounds)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::unknowns_test

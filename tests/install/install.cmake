@@ -59,7 +59,7 @@ if(LIVENS_SLOW_TESTS AND LIVENS_BUILD_PROGRAM)
     add_test(NAME install.shared_libraries
              COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DBUILD=${shared}/build -DPREFIX=${shared}/prefix
                      -DCOMPILER=${CMAKE_CXX_COMPILER} -DGENERATOR=${CMAKE_GENERATOR}
-                     -DWARNINGS_AS_ERRORS=${LIVENS_WARNINGS_AS_ERRORS}
+                     -DWARNINGS_AS_ERRORS=${LIVENS_WARNINGS_AS_ERRORS} -DGROUPS=${LIVENS_GROUPS}
                      -P ${CMAKE_CURRENT_LIST_DIR}/install_shared.cmake)
     set_tests_properties(install.shared_libraries PROPERTIES
                          FIXTURES_SETUP livens_installed_shared LABELS "slow;shared" TIMEOUT 3600)

@@ -15,13 +15,6 @@ namespace {
 
 constexpr double samples[] = {0.0, 1e-9, 0.1, 0.25, 0.5, 0.61, 0.875, 1 - 1e-12, 1.0};
 
-std::string number(double x)
-{
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.3g", x);
-    return buffer;
-}
-
 std::string place_of(int element, double s)
 {
     return " in element " + std::to_string(element) + " at s = " + number(s);

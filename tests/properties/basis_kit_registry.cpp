@@ -75,7 +75,7 @@ void add_splines(std::vector<BasisCase>& cases, int p, const std::string& what, 
                                less_one(made.smoothness)));
 }
 
-std::vector<BasisCase> all_cases()
+std::vector<BasisCase> all_bases()
 {
     std::vector<BasisCase> cases;
     for (int p = 1; p <= 8; ++p) {
@@ -94,7 +94,7 @@ std::vector<BasisCase> all_cases()
 
 const std::vector<BasisCase>& basis_cases()
 {
-    static const std::vector<BasisCase> cases = all_cases();
+    static const std::vector<BasisCase> cases = all_bases();
     return cases;
 }
 

@@ -8,7 +8,7 @@
 
 #include "properties/basis_kit.h"
 
-namespace livens {
+namespace livens::basis_kit_test {
 namespace {
 
 TEST(BasisKit, EverySpacePasses)
@@ -161,4 +161,4 @@ TEST(BasisKit, ALowerSpaceOfOtherKnotsFails)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::basis_kit_test

@@ -11,7 +11,7 @@
 #include "livens/multibody/model.h"
 #include "properties/joint_kit.h"
 
-namespace livens {
+namespace livens::coupled_joints_test {
 namespace {
 
 using Bodies = std::vector<Matrix34>;
@@ -469,4 +469,4 @@ TEST(CoupledJoints, AnEllipseHoldsAllRound)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::coupled_joints_test

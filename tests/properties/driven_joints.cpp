@@ -6,7 +6,7 @@
 #include "livens/multibody/model.h"
 #include "properties/joint_kit.h"
 
-namespace livens {
+namespace livens::driven_joints_test {
 namespace {
 
 /// mean + slope s + amplitude (1 - cos(rate s)), with s = t - kit_instant.
@@ -210,4 +210,4 @@ TEST(DrivenJoints, ARowWithDrivesWantsAnInstant)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::driven_joints_test

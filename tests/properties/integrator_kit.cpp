@@ -14,13 +14,6 @@ namespace {
 
 using tests::Distance;
 
-std::string number(double x)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", x);
-    return text;
-}
-
 /// The last state, or a failure.
 std::optional<Solution> solved(const IntegratorCase& c, const Model& model, const TimeMesh& mesh,
                                Failures& failures)

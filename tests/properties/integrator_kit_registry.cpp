@@ -94,7 +94,7 @@ IntegratorCase collocation_case(int degree)
     return c;
 }
 
-std::vector<IntegratorCase> all_cases()
+std::vector<IntegratorCase> all_integrators()
 {
     std::vector<IntegratorCase> cases{midpoint_case(), endpoint_case(), collocation_case(1),
                                       collocation_case(2)};
@@ -127,7 +127,7 @@ std::vector<IntegratorCase> all_cases()
 
 const std::vector<IntegratorCase>& integrator_cases()
 {
-    static const std::vector<IntegratorCase> cases = all_cases();
+    static const std::vector<IntegratorCase> cases = all_integrators();
     return cases;
 }
 

@@ -13,7 +13,7 @@
 #include "newton_euler.h"
 #include "properties/integrator_kit.h"
 
-namespace livens {
+namespace livens::integrator_kit_test {
 namespace {
 
 using Check = Failures (*)(const IntegratorCase&);
@@ -316,4 +316,4 @@ TEST(IntegratorKit, SpectralRadiiAreThoseOfTheirMaps)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::integrator_kit_test

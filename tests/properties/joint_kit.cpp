@@ -131,11 +131,6 @@ void close(const Joint& joint, Mechanism& m)
     }
 }
 
-std::string number(double x)
-{
-    return std::to_string(x) + " (" + std::to_string(std::log10(std::abs(x) + 1e-300)) + " decades)";
-}
-
 JointFrame exchanged(const JointFrame& frame)
 {
     return {frame.point_second, frame.point_first, frame.axis_second, frame.axis_first};

@@ -6,7 +6,7 @@
 #include "livens/multibody/model.h"
 #include "properties/joint_kit.h"
 
-namespace livens {
+namespace livens::joint_kit_test {
 namespace {
 
 TEST(JointKit, EveryJointPasses)
@@ -139,4 +139,4 @@ TEST(JointKit, AnotherJointForExchangedBodiesFails)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::joint_kit_test

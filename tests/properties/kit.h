@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -22,6 +23,13 @@ inline std::string joined(const Failures& failures)
 {
     std::string text;
     for (const std::string& failure : failures) text += failure + "\n";
+    return text;
+}
+
+inline std::string number(double x)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", x);
     return text;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct LoadCase {
     /// Where the bodies are, for a load that is no number everywhere; else anywhere.
     std::function<std::array<Matrix34, 2>(Random&)> place{};
 };
+
+inline void PrintTo(const LoadCase& load, std::ostream* out) { *out << load.type << ", " << load.what; }
 
 /// Every load of the library, in every variant.
 const std::vector<LoadCase>& load_cases();

@@ -6,10 +6,7 @@
 #include "livens/multibody/loads/load_tape.h"
 #include "properties/load_kit.h"
 
-namespace livens {
-
-static void PrintTo(const LoadCase& load, std::ostream* out) { *out << load.type << ", " << load.what; }
-
+namespace livens::load_kit_test {
 namespace {
 
 class EveryLoad : public testing::TestWithParam<LoadCase> {};
@@ -152,4 +149,4 @@ TEST(LoadKit, AnUndeclaredNeedOfDirectorsFails)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::load_kit_test

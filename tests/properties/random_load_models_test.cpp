@@ -13,7 +13,7 @@
 #include "properties/joint_kit.h"
 #include "properties/load_kit.h"
 
-namespace livens {
+namespace livens::random_load_models_test {
 namespace {
 
 constexpr double bound = 1e-14;
@@ -181,4 +181,4 @@ TEST(LoadsOfRandomModels, AFaultInOneLaneIsFound)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::random_load_models_test

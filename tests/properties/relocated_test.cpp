@@ -11,10 +11,7 @@
 #include "properties/joint_kit.h"
 #include "properties/load_kit.h"
 
-namespace livens {
-
-static void PrintTo(const LoadCase& load, std::ostream* out) { *out << load.type << ", " << load.what; }
-
+namespace livens::relocated_test {
 namespace {
 
 constexpr double bound = 1e-13;
@@ -254,4 +251,4 @@ TEST(Relocated, AForceThatDoesNotTurnIsAnother)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::relocated_test

@@ -6,7 +6,7 @@
 #include "livens/solvers/instructions.h"
 #include "reference/published.h"
 
-namespace livens::tests {
+namespace livens::tests::benchmarks_test {
 namespace {
 
 /// Largest error over all instants of the table, of places in lengths of the model and of turns in rad.
@@ -71,4 +71,4 @@ TEST(Benchmarks, AnotherProblemDoesNotMeetThem)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::benchmarks_test

@@ -7,7 +7,7 @@
 #include "livens/base/text.h"
 #include "reference/solved.h"
 
-namespace livens::tests {
+namespace livens::tests::bends_test {
 namespace {
 
 using Real = long double;
@@ -378,4 +378,4 @@ accuracy = 1e-6
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::bends_test

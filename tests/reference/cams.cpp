@@ -11,7 +11,7 @@
 #include "reference/shipped.h"
 #include "reference/solved.h"
 
-namespace livens::tests {
+namespace livens::tests::cams_test {
 namespace {
 
 using std::numbers::pi;
@@ -313,4 +313,4 @@ TEST(Cams, OrderIs2p)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::cams_test

@@ -5,7 +5,7 @@
 
 #include "reference/shipped.h"
 
-namespace livens::tests {
+namespace livens::tests::coarse_test {
 namespace {
 
 // x(t) = 1 + 0.2 exp(-t) (cos 10 t + 0.1 sin 10 t), in elements of 8 rad each.
@@ -30,4 +30,4 @@ TEST(Coarse, SpringMassConvergesWithFiveElements)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::coarse_test

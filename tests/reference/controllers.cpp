@@ -8,7 +8,7 @@
 #include "livens/multibody/controllers.h"
 #include "reference/shipped.h"
 
-namespace livens::tests {
+namespace livens::tests::controllers_test {
 namespace {
 
 /// States by their names' order, at an end of the motion.
@@ -70,4 +70,4 @@ TEST(ControllerExamples, SampledControl)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::controllers_test

@@ -12,7 +12,7 @@
 #include "livens/statics/equilibrium.h"
 #include "reference/solved.h"
 
-namespace livens::tests {
+namespace livens::tests::couplings_test {
 namespace {
 
 using Row = std::vector<double>;
@@ -413,4 +413,4 @@ TEST(Couplings, OneOfManyTermsIsAsExact)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::couplings_test

@@ -8,7 +8,7 @@
 #include "livens/diagnostics/detail/sampler.h"
 #include "reference/solved.h"
 
-namespace livens::tests {
+namespace livens::tests::driven_test {
 namespace {
 
 /// A cart that is driven, and a bob on a skew pin that swings.
@@ -194,4 +194,4 @@ elements = 16
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::driven_test

@@ -10,7 +10,7 @@
 #include "reference/shipped.h"
 #include "reference/solved.h"
 
-namespace livens::tests {
+namespace livens::tests::events_test {
 namespace {
 
 constexpr double g = 9.81;
@@ -442,4 +442,4 @@ output = [0.4]
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::events_test

@@ -8,7 +8,7 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "reference/shipped.h"
 
-namespace livens::tests {
+namespace livens::tests::examples_test {
 namespace {
 
 void expect_box(const Shipped& s, const nlohmann::json& rows, double tolerance)
@@ -291,4 +291,4 @@ TEST(FreeBody, MeetsTheClosedFormOfASymmetricBody)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::examples_test

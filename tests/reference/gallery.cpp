@@ -6,7 +6,7 @@
 #include "reference/shipped.h"
 #include "reference/solved.h"
 
-namespace livens::tests {
+namespace livens::tests::gallery_test {
 namespace {
 
 constexpr double g = 9.81, pi = std::numbers::pi;
@@ -142,4 +142,4 @@ TEST(Gallery, TheExcavatorsBoomCylinderBearsTheMomentOfTheWeights)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::gallery_test

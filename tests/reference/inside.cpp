@@ -6,7 +6,7 @@
 #include "livens/base/text.h"
 #include "reference/solved.h"
 
-namespace livens::tests {
+namespace livens::tests::inside_test {
 namespace {
 
 struct Tried {
@@ -251,4 +251,4 @@ TEST(Inside, SpringsThroughTheirAnchorTurnRound)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::inside_test

@@ -12,7 +12,7 @@
 #include "reference/shipped.h"
 #include "reference/solved.h"
 
-namespace livens::tests {
+namespace livens::tests::laws_test {
 namespace {
 
 using std::numbers::pi;
@@ -530,4 +530,4 @@ TEST(Laws, AnglesAreCountedWhileMarching)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::laws_test

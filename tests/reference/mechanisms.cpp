@@ -11,7 +11,7 @@
 #include "reference/shipped.h"
 #include "reference/solved.h"
 
-namespace livens::tests {
+namespace livens::tests::mechanisms_test {
 namespace {
 
 using std::numbers::pi;
@@ -523,4 +523,4 @@ between = )" + between +
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::mechanisms_test

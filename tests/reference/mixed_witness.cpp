@@ -12,7 +12,7 @@
 #include "livens/multibody/mass_properties.h"
 #include "mixed_problems.h"
 
-namespace livens::tests {
+namespace livens::tests::mixed_witness_test {
 namespace {
 
 using nlohmann::json;
@@ -128,4 +128,4 @@ TEST(MixedWitness, FindsTheSameConditionNumbers)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::mixed_witness_test

@@ -8,7 +8,7 @@
 
 #include "livens/spacetime/solve.h"
 
-namespace livens::tests {
+namespace livens::tests::reactions_test {
 namespace {
 
 constexpr double g = 9.81;
@@ -215,4 +215,4 @@ TEST(Reactions, JumpWithTheLoad)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::reactions_test

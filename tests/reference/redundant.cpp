@@ -4,7 +4,7 @@
 #include "livens/diagnostics/sample.h"
 #include "shipped.h"
 
-namespace livens::tests {
+namespace livens::tests::redundant_test {
 namespace {
 
 Model under(const Model& model, const Vector3& gravity)
@@ -87,4 +87,4 @@ TEST(Redundant, DoubledJointsShareTheirLoad)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::redundant_test

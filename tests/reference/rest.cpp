@@ -10,7 +10,7 @@
 #include "livens/statics/equilibrium.h"
 #include "reference/shipped.h"
 
-namespace livens::tests {
+namespace livens::tests::rest_test {
 namespace {
 
 struct Rest {
@@ -331,4 +331,4 @@ free_length = 0.7
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::rest_test

@@ -13,7 +13,7 @@
 #include "reference/shipped.h"
 #include "reference/solved.h"
 
-namespace livens::tests {
+namespace livens::tests::ropes_test {
 namespace {
 
 constexpr double g = 9.81;
@@ -238,7 +238,7 @@ struct Particles {
         if (stiffness == 0) return text + rope(points);
         return text + "[[load]]\nname = \"rope\"\ntype = \"spring\"\nstiffness = " + to_text(stiffness) +
                "\ndamping = " + to_text(damping) + "\nfree_length = " + to_text(free_length) + "\n" +
-               livens::tests::over(points);
+               livens::tests::ropes_test::over(points);
     }
 };
 
@@ -485,4 +485,4 @@ TEST(Ropes, WhatNoRopeIsGetsOneErrorEach)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::ropes_test

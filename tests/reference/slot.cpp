@@ -11,7 +11,7 @@
 #include "livens/multibody/joints/spline_curve.h"
 #include "reference/solved.h"
 
-namespace livens::tests {
+namespace livens::tests::slot_test {
 namespace {
 
 using std::numbers::pi;
@@ -116,4 +116,4 @@ TEST(Slot, WrongCurvesAreTold)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::slot_test

@@ -7,7 +7,7 @@
 #include "livens/base/text.h"
 #include "reference/solved.h"
 
-namespace livens::tests {
+namespace livens::tests::statics_test {
 namespace {
 
 const Vector3 at{0.3, -0.2, 0.4}, center{0.9, 0.5, -0.1};
@@ -108,4 +108,4 @@ elements = 2
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::statics_test

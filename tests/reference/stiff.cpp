@@ -8,7 +8,7 @@
 #include "reference/shipped.h"
 #include "reference/solved.h"
 
-namespace livens::tests {
+namespace livens::tests::stiff_test {
 namespace {
 
 // Displacements of the chassis and turns of the lower arm, with rates, by Lagrange's equations in these two
@@ -144,4 +144,4 @@ TEST(Stiff, ToAnAccuracyTheyAreRight)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::stiff_test

@@ -7,7 +7,7 @@
 
 #include "reference/shipped.h"
 
-namespace livens::tests {
+namespace livens::tests::verdicts_test {
 namespace {
 
 Solution solved(const Scenario& s)
@@ -93,4 +93,4 @@ TEST(Verdicts, NoCoarseMeshIsConvergedAndWrong)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::verdicts_test

@@ -64,22 +64,22 @@ private:
 
 namespace {
 
-thread_local CrewMembers* current = nullptr;
+thread_local CrewMembers* present = nullptr;
 
 }   // namespace
 
-Crew::Crew(int n_threads) : outer_(current)
+Crew::Crew(int n_threads) : outer_(present)
 {
-    if (n_threads < 2 || (current != nullptr && current->wanted == n_threads)) return;
+    if (n_threads < 2 || (present != nullptr && present->wanted == n_threads)) return;
     members_ = std::make_unique<CrewMembers>(n_threads);
-    current = members_.get();
+    present = members_.get();
 }
 
-Crew::~Crew() { current = outer_; }
+Crew::~Crew() { present = outer_; }
 
-int Crew::size() { return current != nullptr ? current->wanted : 1; }
+int Crew::size() { return present != nullptr ? present->wanted : 1; }
 
-bool Crew::divides(int n, int least) { return current != nullptr && n / 2 >= least; }
+bool Crew::divides(int n, int least) { return present != nullptr && n / 2 >= least; }
 
 void CrewMembers::start()
 {
@@ -154,9 +154,9 @@ void CrewMembers::run(int n, int least, const Share& share)
         ++round;
     }
     begins.notify_all();
-    CrewMembers* const own = std::exchange(current, nullptr);
+    CrewMembers* const own = std::exchange(present, nullptr);
     do_share(0);
-    current = own;
+    present = own;
     if (thrown[0]) is_stopped = true;   // what comes first is thrown on, so that nobody else counts
     wait_for_others();
     for (const std::exception_ptr& one : thrown)
@@ -165,7 +165,7 @@ void CrewMembers::run(int n, int least, const Share& share)
 
 void divide(int n, int least, const std::function<void(int, int, int)>& work)
 {
-    current->run(n, least, work);
+    present->run(n, least, work);
 }
 
 namespace {

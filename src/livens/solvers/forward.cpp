@@ -19,6 +19,7 @@
 #include "livens/solvers/dense.h"
 #include "livens/solvers/linear_solver.h"
 #include "livens/solvers/patience.h"
+#include "livens/solvers/short_rows.h"
 
 namespace livens::inline solvers_internal {
 
@@ -56,24 +57,31 @@ struct Block {
         for (int i = 0; i < n_rows; ++i, from += stride, to += n_columns) std::copy_n(from, n_columns, to);
     }
 
+    void copy_transposed(const double* from, int stride)
+    {
+        for (int j = 0; j < n_columns; ++j, from += stride)
+            for (int i = 0; i < n_rows; ++i)
+                values[count(i, n_columns) + static_cast<std::size_t>(j)] = from[i];
+    }
+
     /// y <- y - B x and y <- y - B^T x.
     void subtract_product(const double* x, double* y) const
     {
+        const RowFunctions& rows = row_functions();
         const double* b = values.data();
-        for (int i = 0; i < n_rows; ++i)
-            for (int j = 0; j < n_columns; ++j) y[i] -= *b++ * x[j];
+        for (int i = 0; i < n_rows; ++i, b += n_columns) y[i] -= inner(rows, b, x, n_columns);
     }
     void subtract_transposed_product(const double* x, double* y) const
     {
+        const RowFunctions& rows = row_functions();
         const double* b = values.data();
-        for (int i = 0; i < n_rows; ++i)
-            for (int j = 0; j < n_columns; ++j) y[j] -= *b++ * x[i];
+        for (int i = 0; i < n_rows; ++i, b += n_columns) subtract_scaled(rows, y, x[i], b, n_columns);
     }
 };
 
 constexpr int least_shared_pieces = 8;   // that a thread takes, where there are several
 
-[[noreturn]] void refuse(const std::string& why)
+[[noreturn]] void refuse_ends(const std::string& why)
 {
     throw std::invalid_argument("not known at one end: " + why);
 }
@@ -89,7 +97,7 @@ struct Piece {
     int known_begin = 0, passed_begin = 0, all_begin = 0;
     DenseLU lu;
     Outcome outcome = Outcome::singular;   // of its factors
-    Block known;                           // own rows x unknowns of the known node
+    Block known;                           // unknowns of the known node x own rows
     Block passed;                          // rows of the passed node x all unknowns
 };
 
@@ -102,7 +110,7 @@ public:
         is_regular_ = false;
         singular_node_ = -1;
         structure.check();
-        if (structure.n_border > 0 || structure.n_closing > 0) refuse("there is a border");
+        if (structure.n_border > 0 || structure.n_closing > 0) refuse_ends("there is a border");
         is_mirrored_ = choose_end(structure);
         running_sums(structure.n_rows, first_row_);
         running_sums(structure.n_unknowns, first_unknown_);
@@ -111,6 +119,7 @@ public:
             Patience::ask();
             shape(structure, e);
         }
+        for_each_item(n_pieces(), least_shared_pieces, [&](int e) { take_room(structure, e); });
         structure_ = structure;
     }
 
@@ -143,7 +152,7 @@ public:
             const Piece& piece = in_order(i);
             // What the piece before has solved moves to the right-hand side; then the rows that the next
             // piece owns receive this one's unknowns. That is block forward substitution.
-            piece.known.subtract_product(x.data() + piece.known_begin, x.data() + piece.begin);
+            piece.known.subtract_transposed_product(x.data() + piece.known_begin, x.data() + piece.begin);
             piece.lu.solve(x.data() + piece.begin);
             piece.passed.subtract_product(x.data() + piece.all_begin, x.data() + piece.passed_begin);
         }
@@ -159,7 +168,7 @@ public:
             piece.passed.subtract_transposed_product(x.data() + piece.passed_begin,
                                                      x.data() + piece.all_begin);
             piece.lu.solve_transposed(x.data() + piece.begin);
-            piece.known.subtract_transposed_product(x.data() + piece.begin, x.data() + piece.known_begin);
+            piece.known.subtract_product(x.data() + piece.begin, x.data() + piece.known_begin);
         }
     }
 
@@ -168,15 +177,19 @@ public:
     LinearReport report() const override
     {
         LinearReport report{.singular_node = singular_node_};
-        report.smallest_pivot = is_regular_ ? std::numeric_limits<double>::infinity() : 0;
-        for (const Piece& piece : pieces_) {
+        for (const Piece& piece : pieces_)
             report.factor_entries += static_cast<long long>(piece.size) * piece.size +
                                      static_cast<long long>(piece.known.values.size()) +
                                      static_cast<long long>(piece.passed.values.size());
-            if (!is_regular_) continue;   // some have no factors
-            report.smallest_pivot = std::min(report.smallest_pivot, piece.lu.smallest_pivot());
-            report.largest_entry = std::max(report.largest_entry, piece.lu.largest_in_U());
-        }
+        if (!is_regular_) return report;   // some have no factors
+        Values smallest(pieces_.size()), largest(pieces_.size());
+        for_each_item(n_pieces(), least_shared_pieces, [&](int e) {
+            smallest[e] = pieces_[e].lu.smallest_pivot();
+            largest[e] = pieces_[e].lu.largest_in_U();
+        });
+        report.smallest_pivot = std::numeric_limits<double>::infinity();
+        for (const double pivot : smallest) report.smallest_pivot = std::min(report.smallest_pivot, pivot);
+        for (const double entry : largest) report.largest_entry = std::max(report.largest_entry, entry);
         return report;
     }
 
@@ -192,14 +205,14 @@ private:
     {
         for (std::size_t e = 1; e < structure.elements.size(); ++e)
             if (structure.elements[e][0] != structure.elements[e - 1][1])
-                refuse("elements " + std::to_string(e - 1) + " and " + std::to_string(e) +
+                refuse_ends("elements " + std::to_string(e - 1) + " and " + std::to_string(e) +
                        " share more than one node");
         if (structure.elements.empty()) return false;
         // With the state known at the start the first node has no unknowns and the last one no rows;
         // mirrored, vice versa.
         if (structure.n_unknowns.front() == 0 && structure.n_rows.back() == 0) return false;
         if (structure.n_rows.front() == 0 && structure.n_unknowns.back() == 0) return true;
-        refuse("the first node has " + std::to_string(structure.n_unknowns.front()) + " unknowns and " +
+        refuse_ends("the first node has " + std::to_string(structure.n_unknowns.front()) + " unknowns and " +
                std::to_string(structure.n_rows.front()) + " rows, the last " +
                std::to_string(structure.n_unknowns.back()) + " and " +
                std::to_string(structure.n_rows.back()));
@@ -220,15 +233,21 @@ private:
         const int n_rows = row(piece.row_node + inner) - row(piece.row_node);
         piece.size = unknown(piece.unknown_node + inner) - unknown(piece.unknown_node);
         if (n_rows != piece.size)
-            refuse("element " + std::to_string(e) + " has " + std::to_string(n_rows) + " rows for " +
+            refuse_ends("element " + std::to_string(e) + " has " + std::to_string(n_rows) + " rows for " +
                    std::to_string(piece.size) + " unknowns");
         piece.begin = unknown(piece.unknown_node);
         assert(piece.begin == row(piece.row_node));
         piece.known_begin = unknown(piece.known_node);
         piece.passed_begin = row(piece.passed_node);
         piece.all_begin = unknown(first);
+    }
+
+    void take_room(const BlockStructure& structure, int e)
+    {
+        const auto [first, last] = structure.elements[static_cast<std::size_t>(e)];
+        Piece& piece = pieces_[static_cast<std::size_t>(e)];
         piece.lu.resize(piece.size);
-        piece.known.resize(piece.size, structure.n_unknowns[static_cast<std::size_t>(piece.known_node)]);
+        piece.known.resize(structure.n_unknowns[static_cast<std::size_t>(piece.known_node)], piece.size);
         piece.passed.resize(structure.n_rows[static_cast<std::size_t>(piece.passed_node)],
                             unknown(last + 1) - unknown(first));
     }
@@ -238,14 +257,14 @@ private:
     {
         Piece& piece = pieces_[static_cast<std::size_t>(e)];
         const int stride = matrix.stride(e);
-        if (piece.known.n_columns == 0 && piece.passed.n_rows == 0) {   // nothing but its own block
+        if (piece.known.n_rows == 0 && piece.passed.n_rows == 0) {   // nothing but its own block
             piece.lu.exchange(matrix.storage(e));
             return;
         }
         const double* own = matrix.block(e, piece.row_node, piece.unknown_node);
         for (int i = 0; i < piece.size; ++i, own += stride) std::copy_n(own, piece.size, piece.lu.row(i));
         const int first = structure_->elements[static_cast<std::size_t>(e)][0];
-        piece.known.copy(matrix.block(e, piece.row_node, piece.known_node), stride);
+        piece.known.copy_transposed(matrix.block(e, piece.row_node, piece.known_node), stride);
         piece.passed.copy(matrix.block(e, piece.passed_node, first), stride);
     }
 

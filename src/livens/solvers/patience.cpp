@@ -14,7 +14,7 @@ constexpr unsigned calls_between_looks = 16;
 constexpr double seconds_between_questions = 0.01;   // a question may wait for an interpreter's lock
 
 // One chain of questions for each thread: threads of an ensemble do not stop each other.
-thread_local Patience* current = nullptr;
+thread_local Patience* asked = nullptr;
 thread_local unsigned calls = 0;
 
 double now()
@@ -36,21 +36,21 @@ double cpu_time()
 }   // namespace
 
 Patience::Patience(const std::function<bool()>& goes_on, double grace)
-    : goes_on_(goes_on), outer_(current), grace_(grace), last_(now())
+    : goes_on_(goes_on), outer_(asked), grace_(grace), last_(now())
 {
-    if (goes_on_) current = this;
+    if (goes_on_) asked = this;
 }
 
-Patience::~Patience() { current = outer_; }
+Patience::~Patience() { asked = outer_; }
 
 void Patience::ask()
 {
-    if (current != nullptr && ++calls % calls_between_looks == 0) current->look();
+    if (asked != nullptr && ++calls % calls_between_looks == 0) asked->look();
 }
 
 void Patience::ask_now()
 {
-    if (current != nullptr) current->look();
+    if (asked != nullptr) asked->look();
 }
 
 void Patience::look()

@@ -3,7 +3,7 @@
 // method.
 #include "reference/published.h"
 
-namespace livens::tests {
+namespace livens::tests::accuracies_test {
 namespace {
 
 class EveryAccuracy : public ::testing::TestWithParam<double> {};
@@ -38,4 +38,4 @@ INSTANTIATE_TEST_SUITE_P(From, EveryAccuracy,
                          ::testing::Values(1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10));
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::accuracies_test

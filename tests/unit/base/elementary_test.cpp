@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace livens {
+namespace livens::elementary_test {
 
 namespace {
 
@@ -57,4 +57,4 @@ TEST(Elementary, InversesUndoThem)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::elementary_test

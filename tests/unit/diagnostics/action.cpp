@@ -6,7 +6,7 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "unit/diagnostics/hand_made.h"
 
-namespace livens {
+namespace livens::action_test {
 namespace {
 
 using hand_made::mesh;
@@ -189,4 +189,4 @@ TEST(Action, OfARationalMotionIsThatOfTheQuotient)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::action_test

@@ -6,7 +6,7 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "unit/diagnostics/hand_made.h"
 
-namespace livens {
+namespace livens::balance_test {
 namespace {
 
 using hand_made::largest;
@@ -530,4 +530,4 @@ TEST(Balance, OfAMotionThatFailedAtItsStartHasOneEntry)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::balance_test

@@ -8,7 +8,7 @@
 
 #include "unit/diagnostics/hand_made.h"
 
-namespace livens {
+namespace livens::estimate_test {
 namespace {
 
 /// Of two bodies on elements of 1 s: `errors` of the first, the second ten times better.
@@ -88,4 +88,4 @@ TEST(Estimate, GapsAreThoseOfCentresAndTurns)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::estimate_test

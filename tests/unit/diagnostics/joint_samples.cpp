@@ -10,7 +10,7 @@
 #include "unit/diagnostics/hand_made.h"
 #include "unit/multibody/random_states.h"
 
-namespace livens {
+namespace livens::joint_samples_test {
 namespace {
 
 /// A door on two hinges, and a lamp that hangs from it: hinges with rows too many and multipliers of any
@@ -135,4 +135,4 @@ TEST(JointSampler, ServesRigidity)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::joint_samples_test

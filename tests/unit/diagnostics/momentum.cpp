@@ -6,7 +6,7 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "unit/diagnostics/hand_made.h"
 
-namespace livens {
+namespace livens::momentum_test {
 namespace {
 
 /// Centre of mass, its velocity, and the inertia about it in world axes: Newton's and Euler's view of the
@@ -82,4 +82,4 @@ TEST(Momentum, IsThatOfTheCentreAndTheSpin)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::momentum_test

@@ -13,7 +13,7 @@
 #include "unit/diagnostics/hand_made.h"
 #include "unit/multibody/random_states.h"
 
-namespace livens {
+namespace livens::pass_test {
 namespace {
 
 /// A few bodies with a joint of another kind between each two: rows that are quadratic forms, others, and
@@ -390,4 +390,4 @@ TEST(Pass, AlternatesAsItsIncrementsDo)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::pass_test

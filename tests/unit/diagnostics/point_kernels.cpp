@@ -9,7 +9,7 @@
 #include "unit/diagnostics/hand_made.h"
 #include "unit/multibody/random_states.h"
 
-namespace livens {
+namespace livens::point_kernels_test {
 namespace {
 
 constexpr int W = OfPoints::width;
@@ -85,4 +85,4 @@ TEST(PointKernels, HaveTheSameBitsOnEverySetOfInstructions)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::point_kernels_test

@@ -6,7 +6,7 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "unit/diagnostics/hand_made.h"
 
-namespace livens {
+namespace livens::rigidity_test {
 namespace {
 
 constexpr int pairs[6][2] = {{1, 1}, {2, 2}, {3, 3}, {1, 2}, {1, 3}, {2, 3}};
@@ -111,4 +111,4 @@ TEST(RigidityMultipliers, OfAPointMassAreZero)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::rigidity_test

@@ -8,7 +8,7 @@
 #include "livens/base/error.h"
 #include "unit/diagnostics/hand_made.h"
 
-namespace livens {
+namespace livens::sample_test {
 namespace {
 
 /// A body that turns about its third axis with 2 rad/s and flies along x with 3 m/s.
@@ -53,4 +53,4 @@ TEST(Sample, TakesTheElementEndThatDecimalsMean)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::sample_test

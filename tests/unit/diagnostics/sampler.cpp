@@ -7,7 +7,7 @@
 
 #include "unit/diagnostics/hand_made.h"
 
-namespace livens {
+namespace livens::sampler_test {
 namespace {
 
 using hand_made::stacked;
@@ -127,4 +127,4 @@ TEST(Sampler, KnowsBothSidesOfAnElementEnd)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::sampler_test

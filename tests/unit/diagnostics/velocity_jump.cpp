@@ -7,7 +7,7 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "unit/diagnostics/hand_made.h"
 
-namespace livens {
+namespace livens::velocity_jump_test {
 namespace {
 
 Model two_particles()
@@ -58,4 +58,4 @@ TEST(LocalError, HasTheOrderOfTheElement)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::velocity_jump_test

@@ -7,7 +7,7 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "unit/diagnostics/hand_made.h"
 
-namespace livens {
+namespace livens::violations_test {
 namespace {
 
 using hand_made::mesh;
@@ -234,4 +234,4 @@ TEST(Violations, RefuseANegativeNumberOfSamples)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::violations_test

@@ -9,7 +9,7 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "unit/diagnostics/hand_made.h"
 
-namespace livens {
+namespace livens::zigzag_test {
 namespace {
 
 using hand_made::mesh;
@@ -353,4 +353,4 @@ TEST(Zigzag, NeverExceedsOne)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::zigzag_test

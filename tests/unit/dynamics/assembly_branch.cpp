@@ -10,7 +10,7 @@
 #include "livens/multibody/joints/drives.h"
 #include "unit/multibody/random_states.h"
 
-namespace livens {
+namespace livens::assembly_branch_test {
 namespace {
 
 TEST(ConsistentStart, RefusesARevoluteWithItsAxesTurnedEndForEnd)
@@ -136,4 +136,4 @@ TEST(ConsistentStart, TurnsAxesThatAreFarFromEachOther)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::assembly_branch_test

@@ -11,9 +11,8 @@
 #include "livens/base/error.h"
 #include "violations.h"
 
+namespace livens::assembly_test {
 namespace {
-
-using namespace livens;
 
 MassProperties properties(double mass, const Vector3& center, const Vector3& inertia)
 {
@@ -581,3 +580,4 @@ TEST(ConsistentStart, ClosesAChainOfPointMassesOnRods)
 }
 
 }   // namespace
+}   // namespace livens::assembly_test

@@ -17,7 +17,7 @@
 #include "livens/time/time_laws.h"
 #include "unit/dynamics/linkages.h"
 
-namespace livens {
+namespace livens::generalised_state_test {
 namespace {
 
 using Numbers = std::vector<double>;
@@ -508,4 +508,4 @@ TEST(GeneralisedState, TellsHowFarAPoseIsOutOfReach)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::generalised_state_test

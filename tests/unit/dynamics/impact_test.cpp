@@ -12,7 +12,7 @@
 #include "livens/multibody/joints/stops.h"
 #include "livens/multibody/model.h"
 
-namespace livens {
+namespace livens::impact_test {
 
 namespace {
 
@@ -176,4 +176,4 @@ TEST(Impact, LetsGoOfStopsThatWouldPull)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::impact_test

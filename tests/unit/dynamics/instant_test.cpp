@@ -15,7 +15,7 @@
 #include "livens/dynamics/start/consistent_start.h"
 #include "workshop.h"
 
-namespace livens {
+namespace livens::instant_test {
 namespace {
 
 constexpr Instant now{0.37};
@@ -509,4 +509,4 @@ TEST(Instant, LookingBackFitsTheCubicThroughTwoEnds)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::instant_test

@@ -9,7 +9,7 @@
 #include "livens/dynamics/start/consistent_start.h"
 #include "violations.h"
 
-namespace livens {
+namespace livens::projection_test {
 namespace {
 
 /// Relative to the largest speed.
@@ -111,4 +111,4 @@ TEST(Projection, OfRatesIsNearestForRemoteReferencePoints)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::projection_test

@@ -11,7 +11,7 @@
 #include "livens/dynamics/start/consistent_start.h"
 #include "livens/dynamics/start/singular.h"
 
-namespace livens {
+namespace livens::rank_test {
 namespace {
 
 /// Of 60 linkages with 2 to 6 bodies, how many are refused or get another number of independent rows.
@@ -207,4 +207,4 @@ TEST(Rank, SeesWhatOneAxisOutOfParallelTakesAway)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::rank_test

@@ -14,7 +14,7 @@
 #include "livens/multibody/motion.h"
 #include "livens/solvers/dense.h"
 
-namespace livens {
+namespace livens::reactions_test {
 namespace {
 
 std::vector<Matrix34> places(const Model& model) { return model.start().X; }
@@ -263,4 +263,4 @@ TEST(LeastReactions, RowsOfOneJointThatSayTheSameLeaveItUnique)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::reactions_test

@@ -13,7 +13,7 @@
 #include "livens/dynamics/start/singular.h"
 #include "parallelograms.h"
 
-namespace livens {
+namespace livens::singular_test {
 namespace {
 
 using tests::Parallelograms;
@@ -176,4 +176,4 @@ TEST(SingularStart, IsRefusedWithWhatToGive)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::singular_test

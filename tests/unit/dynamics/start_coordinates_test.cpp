@@ -10,7 +10,7 @@
 #include "unit/dynamics/linkages.h"
 #include "unit/multibody/random_states.h"
 
-namespace livens {
+namespace livens::start_coordinates_test {
 namespace {
 
 constexpr double a = 0.42, b = 0.9, c = 1, d = 1;   // crank, coupler, rocker, ground
@@ -221,4 +221,4 @@ TEST(StartCoordinates, TellsWhichAreIndependent)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::start_coordinates_test

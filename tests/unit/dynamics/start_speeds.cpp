@@ -11,7 +11,7 @@
 #include "livens/multibody/loads/load_laws.h"
 #include "livens/time/time_laws.h"
 
-namespace livens {
+namespace livens::start_speeds_test {
 namespace {
 
 /// A ball on a ball joint at its centre that moves away with this speed.
@@ -78,4 +78,4 @@ TEST(StartSpeeds, OfDrivesMayBeRounding)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::start_speeds_test

@@ -12,7 +12,7 @@
 
 #include "workshop.h"
 
-namespace livens {
+namespace livens::tables_test {
 namespace {
 
 constexpr Instant now{0.37};
@@ -409,4 +409,4 @@ TEST(ModelTables, BodiesWithoutInertiaKeepTheirMassAndLoseTheMetric)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::tables_test

@@ -10,7 +10,7 @@
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
 
-namespace livens {
+namespace livens::twist_test {
 namespace {
 
 class Dice {
@@ -179,4 +179,4 @@ TEST(Twist, GeometricTermIsTheDerivativeOfTheRows)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::twist_test

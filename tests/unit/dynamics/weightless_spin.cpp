@@ -5,7 +5,7 @@
 #include "linkages.h"
 #include "livens/dynamics/start/consistent_start.h"
 
-namespace livens {
+namespace livens::weightless_spin_test {
 namespace {
 
 std::string verdict(const Model& model)
@@ -152,4 +152,4 @@ TEST(WeightlessSpin, DoesNotDependOnMassesOfOthers)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::weightless_spin_test

@@ -6,7 +6,7 @@
 
 #include "unit/geometry/shapes.h"
 
-namespace livens {
+namespace livens::contacts_test {
 
 namespace {
 
@@ -190,4 +190,4 @@ TEST_F(Contacts, AreSeenInAFanThatGoesRoundTwice)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::contacts_test

@@ -2,7 +2,7 @@
 // Solids whose density is a field, against closed forms.
 #include "unit/geometry/shapes.h"
 
-namespace livens {
+namespace livens::density_test {
 
 namespace {
 
@@ -155,4 +155,4 @@ TEST(Density, WhichIsNoneIsRefused)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::density_test

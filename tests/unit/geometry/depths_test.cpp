@@ -6,7 +6,7 @@
 #include "livens/geometry/detail/depths.h"
 #include "unit/geometry/shapes.h"
 
-namespace livens {
+namespace livens::depths_test {
 
 namespace {
 
@@ -147,4 +147,4 @@ TEST(Nested, ShellsAreFoundToBeSoundWhereTheyAreFew)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::depths_test

@@ -2,7 +2,7 @@
 // Integrals over meshes against closed forms.
 #include "unit/geometry/shapes.h"
 
-namespace livens {
+namespace livens::moments_test {
 
 namespace {
 
@@ -255,4 +255,4 @@ TEST(Moments, OfUnionsKeepTheirDigitsFarAway)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::moments_test

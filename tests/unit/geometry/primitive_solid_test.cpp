@@ -10,7 +10,7 @@
 #include "livens/base/error.h"
 #include "livens/geometry/primitive_solid.h"
 
-namespace livens {
+namespace livens::primitive_solid_test {
 
 namespace {
 
@@ -201,4 +201,4 @@ TEST(PrimitiveSurface, IsClosed)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::primitive_solid_test

@@ -6,7 +6,7 @@
 
 #include "unit/geometry/shapes.h"
 
-namespace livens {
+namespace livens::readers_test {
 
 namespace {
 
@@ -244,4 +244,4 @@ TEST(Readers, SayWhatIsNoFile)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::readers_test

@@ -4,7 +4,7 @@
 
 #include "unit/geometry/shapes.h"
 
-namespace livens {
+namespace livens::soundness_test {
 
 namespace {
 
@@ -164,4 +164,4 @@ TEST(Soundness, OfVolumesLooksAtJacobiansAndFaces)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::soundness_test

@@ -11,7 +11,7 @@
 #include "livens/io/results.h"
 #include "unit/io/sample_run.h"
 
-namespace livens {
+namespace livens::classic_netcdf_test {
 namespace {
 
 const std::string hash = "CHECKSUMCHECKSUM";   // stands for 16 digits
@@ -249,4 +249,4 @@ TEST(ClassicNetcdf, LargeVariablesArriveInPieces)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::classic_netcdf_test

@@ -9,7 +9,7 @@
 
 #include "livens/base/error.h"
 
-namespace livens {
+namespace livens::collada_test {
 
 namespace {
 
@@ -162,4 +162,4 @@ TEST(Collada, RefusesWhatItCannotReadWithTheLine)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::collada_test

@@ -11,7 +11,7 @@
 #include "livens/statics/equilibrium.h"
 #include "unit/io/swinging_rod.h"
 
-namespace livens {
+namespace livens::controllers_test {
 
 namespace {
 
@@ -318,4 +318,4 @@ TEST(Controllers, ThatAreSampledHaveNoRest)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::controllers_test

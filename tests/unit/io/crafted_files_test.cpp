@@ -7,7 +7,7 @@
 #include "livens/io/json.h"
 #include "unit/io/sample_run.h"
 
-namespace livens {
+namespace livens::crafted_files_test {
 namespace {
 
 using test::Crafted;
@@ -198,4 +198,4 @@ TEST(CraftedFiles, OptionsAreAJsonObject)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::crafted_files_test

@@ -6,7 +6,7 @@
 #include "livens/spacetime/solve.h"
 #include "unit/io/swinging_rod.h"
 
-namespace livens {
+namespace livens::decided_events_test {
 
 namespace {
 
@@ -238,4 +238,4 @@ TEST(DecidedEvents, AreRefusedByName)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::decided_events_test

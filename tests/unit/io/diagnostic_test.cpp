@@ -11,7 +11,7 @@
 
 #include "livens/io/scenario/text/findings.h"
 
-namespace livens {
+namespace livens::diagnostic_test {
 
 namespace {
 
@@ -228,4 +228,4 @@ TEST(Codes, EveryCodeInTheSourcesHasAPage)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::diagnostic_test

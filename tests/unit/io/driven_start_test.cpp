@@ -7,7 +7,7 @@
 #include "livens/spacetime/solve.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::driven_start_test {
 namespace {
 
 using test::find;
@@ -218,4 +218,4 @@ TEST(StatedVelocities, ThatDoNotFitAreToldAlsoWhereTheyAreZero)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::driven_start_test

@@ -8,7 +8,7 @@
 #include "livens/spacetime/solve.h"
 #include "unit/io/swinging_rod.h"
 
-namespace livens {
+namespace livens::events_truth_test {
 
 namespace {
 
@@ -242,4 +242,4 @@ TEST(EventsTruth, StopsAreForMotionsForwardsFromAState)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::events_truth_test

@@ -4,7 +4,7 @@
 
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::examples_of_codes_test {
 
 namespace {
 
@@ -176,4 +176,4 @@ TEST(ExamplesOfCodes, StandWhereverAScenarioLeads)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::examples_of_codes_test

@@ -14,7 +14,7 @@
 #include "livens/spacetime/solve.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::examples_test {
 
 namespace {
 
@@ -189,4 +189,4 @@ TEST(Examples, TheFourBarIsRedundantAndHasOneFreedom)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::examples_test

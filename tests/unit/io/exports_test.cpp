@@ -9,7 +9,7 @@
 #include "livens/spacetime/solve.h"
 #include "unit/io/sample_run.h"
 
-namespace livens {
+namespace livens::exports_test {
 namespace {
 
 /// A wheel of a bolt, 2 turns a second for a minute.
@@ -131,4 +131,4 @@ TEST_F(Results, ExportsThatCannotBeWrittenSaySo)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::exports_test

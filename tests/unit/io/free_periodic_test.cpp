@@ -12,7 +12,7 @@
 #include "livens/io/solve_scenario.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::free_periodic_test {
 namespace {
 
 using test::read;
@@ -345,4 +345,4 @@ TEST(FreePeriodic, MomentaAreKeptToo)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::free_periodic_test

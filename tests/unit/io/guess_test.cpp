@@ -6,7 +6,7 @@
 #include "livens/io/guess.h"
 #include "livens/io/solve_scenario.h"
 
-namespace livens {
+namespace livens::guess_test {
 namespace {
 
 using RunFile = Run;   // testing::Test has a Run of its own
@@ -99,4 +99,4 @@ TEST(Guess, OfAnotherMechanismOrTimeIsRefused)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::guess_test

@@ -10,7 +10,7 @@
 
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::hostile_test {
 
 namespace {
 
@@ -267,4 +267,4 @@ TEST(Hostile, ByteOrderMarkAndWindowsLinesAreFine)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::hostile_test

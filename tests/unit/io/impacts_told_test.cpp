@@ -8,7 +8,7 @@
 
 #include "unit/io/swinging_rod.h"
 
-namespace livens {
+namespace livens::impacts_told_test {
 
 namespace {
 
@@ -173,4 +173,4 @@ TEST(ToldErrorsOfImpacts, GrazesThatKinksHideAreUndecided)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::impacts_told_test

@@ -11,7 +11,7 @@
 #include "unit/io/scenario_text.h"
 #include "unit/io/swinging_rod.h"
 
-namespace livens {
+namespace livens::include_test {
 namespace {
 
 using test::find;
@@ -441,4 +441,4 @@ TEST(Include, MeshesOfAFileLieBesideIt)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::include_test

@@ -10,7 +10,7 @@
 #include "livens/io/solve_scenario.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::joint_loads_test {
 
 namespace {
 
@@ -239,9 +239,13 @@ TEST(JointLimits, AreToldWhereTheyAreReached)
 }
 
 }   // namespace
+}   // namespace livens::joint_loads_test
+
+namespace livens {
 
 std::vector<test::Case> test::cases_of_joint_loads()
 {
+    using namespace joint_loads_test;
     const auto one = [](const std::string& keys) { return held("revolute", keys); };
     return {
         {"joint-loads", one("rest = 1"), "1\n\n[time]"},

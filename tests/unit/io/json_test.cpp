@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace livens {
+namespace livens::json_test {
 
 namespace {
 
@@ -102,4 +102,4 @@ TEST(JsonDeathTest, MisuseIsAsserted)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::json_test

@@ -8,7 +8,7 @@
 #include "livens/spacetime/solve.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::known_test {
 namespace {
 
 using test::find;
@@ -254,4 +254,4 @@ TEST(KnownComponents, AreThoseOfPeriodicMotions)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::known_test

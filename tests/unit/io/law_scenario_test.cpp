@@ -2,7 +2,7 @@
 // Expressions, laws and sensors: what arrives, and what is told where.
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::law_scenario_test {
 
 namespace {
 
@@ -205,9 +205,13 @@ TEST(Slots, AreTheSameWhetherRoundingKeepsTheFirstPointFromTheLast)
 }
 
 }   // namespace
+}   // namespace livens::law_scenario_test
+
+namespace livens {
 
 std::vector<test::Case> test::cases_of_laws()
 {
+    using namespace law_scenario_test;
     const std::string angle = "inputs = { a = \"j.angle\" }\n";
     const std::string unit = "stiffness = [1, 1, 1, 1, 1, 1]\n";
     std::vector<Case> all{
@@ -259,8 +263,7 @@ std::vector<test::Case> test::cases_of_laws()
         {"out-of-range", with("[[load]]\ntype = \"attraction\"\nbody = \"b\"\nmu = -1"), "-1\n[time]"},
         {"drive-size",
          with("[[body]]\nname = \"c\"\nmass = 1\ninertia = [1, 1, 1]\n[[drive]]\nname = \"d\"\ntype = "
-              "\"point\"\n"
-              "body = \"c\"\nexpression = \"t\""),
+              "\"point\"\nbody = \"c\"\nexpression = \"t\""),
          "\"t\"\n[time]"},
     };
     for (const Case& more : cases_of_driven_laws()) all.push_back(more);

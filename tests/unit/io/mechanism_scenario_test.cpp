@@ -5,7 +5,7 @@
 #include "livens/multibody/joints.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::mechanism_scenario_test {
 
 namespace {
 
@@ -314,9 +314,13 @@ std::vector<test::Case> cases_along_joints()
 }
 
 }   // namespace
+}   // namespace livens::mechanism_scenario_test
+
+namespace livens {
 
 std::vector<test::Case> test::cases_of_mechanisms()
 {
+    using namespace mechanism_scenario_test;
     std::vector<Case> all = cases_of_joints();
     for (const std::vector<Case>& more : {cases_along_joints(), cases_of_couplings(), cases_of_joint_loads()})
         all.insert(all.end(), more.begin(), more.end());

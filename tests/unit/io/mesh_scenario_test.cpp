@@ -11,7 +11,7 @@
 #include "livens/spacetime/solve.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::mesh_scenario_test {
 
 namespace {
 
@@ -505,4 +505,4 @@ TEST_F(MeshScenario, IsMadeAgainWithoutItsFiles)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::mesh_scenario_test

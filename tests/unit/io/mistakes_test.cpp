@@ -3,8 +3,10 @@
 // instead.
 #include "scenario_text.h"
 
-namespace livens::test {
+namespace livens::mistakes_test {
 namespace {
+
+using namespace test;
 
 const std::string arm = R"(format = 1
 gravity = [0, 0, -9.81]
@@ -197,4 +199,4 @@ TEST(Mistakes, AreNotSeenInWhatIsRight)
 }
 
 }   // namespace
-}   // namespace livens::test
+}   // namespace livens::mistakes_test

@@ -11,7 +11,7 @@
 #include "livens/io/solve_scenario.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::mixed_components_test {
 
 namespace {
 
@@ -255,4 +255,4 @@ TEST(MixedComponents, WhatTheyCannotIsRefused)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::mixed_components_test

@@ -7,7 +7,7 @@
 #include "livens/solvers/sparse.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::mixed_scenario_test {
 
 namespace {
 
@@ -349,9 +349,13 @@ TEST(Advice, OfTheCoreIsSpelledInTheKeysOfTheFile)
 }
 
 }   // namespace
+}   // namespace livens::mixed_scenario_test
+
+namespace livens {
 
 std::vector<test::Case> test::cases_of_mixed()
 {
+    using namespace mixed_scenario_test;
     const std::string lamina =
         replaced(replaced(mixed(""), "[0.2, 0.3, 0.4]", "[1, 2, 3]"), "mass = 2", "mass = 1");
     return {

@@ -6,7 +6,7 @@
 #include "unit/io/model_numbers.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::named_points_test {
 namespace {
 
 using test::expect_error;
@@ -175,4 +175,4 @@ TEST(NamedPoints, OneMistakeIsOneError)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::named_points_test

@@ -2,8 +2,10 @@
 // What users write who know other programs, and what they are told.
 #include "scenario_text.h"
 
-namespace livens::test {
+namespace livens::other_words_test {
 namespace {
+
+using namespace test;
 
 /// The help of the finding of a code.
 std::string help(const std::string& text, std::string_view code)
@@ -108,4 +110,4 @@ TEST(OtherWords, PointsThatAreMeantInTheWorldAreToldApart)
 }
 
 }   // namespace
-}   // namespace livens::test
+}   // namespace livens::other_words_test

@@ -8,7 +8,7 @@
 #include "livens/io/scenario/text/parameters.h"
 #include "scenario_text.h"
 
-namespace livens {
+namespace livens::parameters_test {
 
 namespace {
 
@@ -356,4 +356,4 @@ TEST(ParametersOfScenarios, WordsAndLoneNumbersAreNoExpressions)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::parameters_test

@@ -10,7 +10,7 @@
 #include "livens/spacetime/on_ranks.h"
 #include "unit/io/sample_run.h"
 
-namespace livens {
+namespace livens::parts_test {
 namespace {
 
 class Parts : public Results {};
@@ -110,4 +110,4 @@ TEST_F(Parts, AreAbsentWhereARankFails)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::parts_test

@@ -137,7 +137,7 @@ inline const Case periodic[] = {
      cart + "expression = \"3*cos(pi*t)\"\n" + time_of("end = 2\nelements = 40\nperiodic = true", 2)},
 };
 
-inline const Case with_numbers[] = {
+inline const Case numbered_cases[] = {
     {"a damper, of a rate at the end",
      replaced(chain, "damping = 0.4", "damping = { unknown = 0.3, low = 0 }") +
          "[start]\nknown = { \"j1.angle\" = 0.1, \"j2.angle\" = -0.2, \"j2.angle_rate\" = 0.5, "

@@ -15,7 +15,7 @@
 #include "livens/spacetime/on_ranks.h"
 #include "unit/io/rank_cases.h"
 
-namespace livens {
+namespace livens::ranks_border_test {
 
 namespace {
 
@@ -33,7 +33,7 @@ TEST(RanksBorder, PeriodicMotionsAreThoseOfTheSerialRun)
 
 TEST(RanksBorder, UnknownNumbersAreThoseOfTheSerialRun)
 {
-    for (const Case& one : with_numbers) expect_the_same(one, {1, 3, 4});
+    for (const Case& one : numbered_cases) expect_the_same(one, {1, 3, 4});
 }
 
 /// 4 K(sin(1/2)) / w by the mean of arithmetic and geometric means: closed forms, and their controls.
@@ -145,7 +145,7 @@ TEST(RanksBorder, WhatIsNotLookedForIsRefused)
 /// conditions of both ends, and numbers.
 TEST(RanksBorder, TheChainHasTheBorderBesideIt)
 {
-    const std::string text = replaced(replaced(with_numbers[2].text, "elements = 60", "elements = 640"),
+    const std::string text = replaced(replaced(numbered_cases[2].text, "elements = 60", "elements = 640"),
                                       "degree = 2", "degree = 1");
     for (const int n : {1, 2, 4, 7})
         for (const Part& part : by_ranks(text, n)) {
@@ -158,4 +158,4 @@ TEST(RanksBorder, TheChainHasTheBorderBesideIt)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::ranks_border_test

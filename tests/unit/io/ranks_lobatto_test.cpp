@@ -9,7 +9,7 @@
 #include "livens/base/error.h"
 #include "unit/io/rank_cases.h"
 
-namespace livens {
+namespace livens::ranks_lobatto_test {
 
 namespace {
 
@@ -80,7 +80,7 @@ TEST(RanksLobatto, PeriodicMotionsAreThoseOfTheSerialRun)
 
 TEST(RanksLobatto, UnknownNumbersAreThoseOfTheSerialRun)
 {
-    for (const Case& one : with_numbers) expect_the_same(by_lobatto(one, 3), {1, 3, 4});
+    for (const Case& one : numbered_cases) expect_the_same(by_lobatto(one, 3), {1, 3, 4});
 }
 
 /// The period of a swing by the mean of arithmetic and geometric means: closed forms, and their controls.
@@ -121,7 +121,7 @@ TEST(RanksLobatto, TheChainIsAsLongAsIsSaid)
 {
     for (const int n : {1, 2, 4, 7}) {
         for (const Part& part : by_ranks(between_angles(64), n)) EXPECT_EQ(part.work.n_chain, 2 * (n + 1));
-        for (const Part& part : by_ranks(by_lobatto(with_numbers[2], 2).text, n)) {
+        for (const Part& part : by_ranks(by_lobatto(numbered_cases[2], 2).text, n)) {
             EXPECT_EQ(part.work.n_chain, 2 * (n + 1) + (n > 1 ? 2 : 0) + 2) << n;
             EXPECT_EQ(part.work.n_left, 2);
             EXPECT_EQ(part.work.n_formed, part.work.last - part.work.first);
@@ -215,4 +215,4 @@ TEST(RanksLobatto, SpringsThatTurnAreSuspect)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::ranks_lobatto_test

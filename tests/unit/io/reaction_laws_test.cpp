@@ -8,7 +8,7 @@
 #include "livens/spacetime/solve.h"
 #include "unit/io/swinging_rod.h"
 
-namespace livens {
+namespace livens::reaction_laws_test {
 
 namespace {
 
@@ -308,4 +308,4 @@ axis = [0, 1, 0]
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::reaction_laws_test

@@ -4,7 +4,7 @@
 
 #include "scenario_text.h"
 
-namespace livens {
+namespace livens::repeat_test {
 
 namespace {
 
@@ -199,4 +199,4 @@ TEST(Repeat, HasAHeadOfItsOwn)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::repeat_test

@@ -16,7 +16,7 @@
 #include "livens/io/surface.h"
 #include "livens/spacetime/solve.h"
 
-namespace livens {
+namespace livens::report_test {
 namespace {
 
 using RunFile = Run;   // testing::Test has a Run of its own
@@ -370,4 +370,4 @@ TEST(ReportText, Base64)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::report_test

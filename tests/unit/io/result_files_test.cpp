@@ -15,7 +15,7 @@
 #include "sanitized.h"
 #include "unit/io/sample_run.h"
 
-namespace livens {
+namespace livens::result_files_test {
 namespace {
 
 // --- files of strangers
@@ -264,4 +264,4 @@ TEST_F(Results, FullDiskLeavesTheOldFile)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::result_files_test

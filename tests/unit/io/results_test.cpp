@@ -17,7 +17,7 @@
 #include "livens/time/time_mesh.h"
 #include "unit/io/sample_run.h"
 
-namespace livens {
+namespace livens::results_test {
 namespace {
 
 // --- what is written is read
@@ -592,4 +592,4 @@ TEST_F(Results, RunsOfWhichNothingWasSolvedHoldTheirStart)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::results_test

@@ -16,7 +16,7 @@
 #include "livens/multibody/body.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::rotation_vector_test {
 
 namespace {
 
@@ -293,4 +293,4 @@ TEST(RotationVector, AccelerationsAreLagranges)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::rotation_vector_test

@@ -18,7 +18,7 @@
 #include "livens/statics/linearisation.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::rotor_inertia_test {
 
 namespace {
 
@@ -449,4 +449,4 @@ TEST(RotorInertia, ThatCannotBeIsRefused)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::rotor_inertia_test

@@ -9,7 +9,7 @@
 #include "unit/io/codes_of_tests.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::scenario_test {
 
 namespace {
 
@@ -542,4 +542,4 @@ TEST(Scenario, SuggestionsNameTheNearestBody)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::scenario_test

@@ -13,7 +13,7 @@
 #include "sanitized.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::schema_test {
 
 namespace {
 
@@ -502,4 +502,4 @@ TEST(Schema, JsonHasNothingThatHidesASlip)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::schema_test

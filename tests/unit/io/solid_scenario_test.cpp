@@ -6,7 +6,7 @@
 #include "livens/spacetime/solve.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::solid_scenario_test {
 
 namespace {
 
@@ -243,4 +243,4 @@ TEST(SolidScenario, PartsAreWeighed)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::solid_scenario_test

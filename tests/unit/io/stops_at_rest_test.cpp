@@ -9,7 +9,7 @@
 #include "livens/statics/equilibrium.h"
 #include "unit/io/swinging_rod.h"
 
-namespace livens {
+namespace livens::stops_at_rest_test {
 
 namespace {
 
@@ -280,4 +280,4 @@ TEST(StopsAtRest, SmallMotionsAskForARest)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::stops_at_rest_test

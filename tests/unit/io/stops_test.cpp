@@ -7,7 +7,7 @@
 #include "livens/spacetime/solve.h"
 #include "unit/io/swinging_rod.h"
 
-namespace livens {
+namespace livens::stops_test {
 
 namespace {
 
@@ -481,4 +481,4 @@ TEST(Stops, AreRefusedByName)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::stops_test

@@ -11,7 +11,7 @@
 #include "unit/io/sample_run.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::strangers_test {
 namespace {
 
 const ExportFormat& format(std::string_view word)
@@ -126,4 +126,4 @@ TEST(Places, EverySyntaxErrorHasOne)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::strangers_test

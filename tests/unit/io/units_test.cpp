@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-namespace livens {
+namespace livens::units_test {
 
 namespace {
 
@@ -164,4 +164,4 @@ TEST(Units, NumbersAreReadWholeAndFinite)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::units_test

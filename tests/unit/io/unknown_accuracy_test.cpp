@@ -13,7 +13,7 @@
 #include "livens/io/solve_scenario.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::unknown_accuracy_test {
 namespace {
 
 using test::read;
@@ -407,4 +407,4 @@ TEST(UnknownsToAccuracy, NumbersThatActAlikeAreNotDetermined)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::unknown_accuracy_test

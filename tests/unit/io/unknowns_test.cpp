@@ -9,7 +9,7 @@
 #include "livens/io/solve_scenario.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::unknowns_test {
 namespace {
 
 using test::find;
@@ -299,4 +299,4 @@ TEST(UnknownsOfFiles, ThatNothingShowsAreToldWhereTheyStand)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::unknowns_test

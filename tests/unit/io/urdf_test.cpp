@@ -14,7 +14,7 @@
 #include "livens/multibody/mass_properties.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::urdf_test {
 
 namespace {
 
@@ -597,4 +597,4 @@ TEST(Urdf, HostileFilesAreAnsweredBeforeTheyGrow)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::urdf_test

@@ -7,7 +7,7 @@
 #include "livens/io/scenario/bodies/colors.h"
 #include "unit/io/scenario_text.h"
 
-namespace livens {
+namespace livens::visual_scenario_test {
 
 namespace {
 
@@ -199,4 +199,4 @@ TEST(Colors, AreNamesAndNumbersInLettersOfAnyCase)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::visual_scenario_test

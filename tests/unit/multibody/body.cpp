@@ -8,7 +8,7 @@
 
 #include "unit/multibody/random_states.h"
 
-namespace livens {
+namespace livens::body_test {
 namespace {
 
 double gap_of(const Matrix3& D) { return largest(transpose(D) * D - identity<3>()); }
@@ -263,4 +263,4 @@ TEST(Body, PointMassIsZeroOutsideTheFirstColumn)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::body_test

@@ -7,7 +7,7 @@
 
 #include "unit/multibody/random_states.h"
 
-namespace livens {
+namespace livens::constraint_test {
 namespace {
 
 using Bodies = std::vector<Matrix34>;
@@ -147,4 +147,4 @@ TEST(ConstraintRow, NeedsTwoBodies)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::constraint_test

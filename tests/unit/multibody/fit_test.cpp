@@ -7,7 +7,7 @@
 
 #include "unit/multibody/random_states.h"
 
-namespace livens {
+namespace livens::fit_test {
 namespace {
 
 /// Two bodies that stand anywhere, and a frame that both share but for a small miss.
@@ -80,4 +80,4 @@ TEST(Fit, MovesByTheLeast)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::fit_test

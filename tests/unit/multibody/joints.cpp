@@ -9,7 +9,7 @@
 #include "livens/multibody/joints/spline_curve.h"
 #include "unit/multibody/random_states.h"
 
-namespace livens {
+namespace livens::joints_test {
 namespace {
 
 std::vector<double> values(const Joint& joint, const Matrix34& X_first, const Matrix34& X_second)
@@ -199,4 +199,4 @@ TEST(Joint, SlotKeepsItsWholeCurveToBeDrawn)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::joints_test

@@ -9,7 +9,7 @@
 #include "livens/base/error.h"
 #include "unit/multibody/random_states.h"
 
-namespace livens {
+namespace livens::loads_test {
 namespace {
 
 constexpr int states = 1000;
@@ -420,4 +420,4 @@ TEST(Bushing, TellsTheCoupleThatActs)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::loads_test

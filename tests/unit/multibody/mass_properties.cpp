@@ -10,7 +10,7 @@
 #include "livens/multibody/nearest_inertia.h"
 #include "unit/multibody/random_states.h"
 
-namespace livens {
+namespace livens::mass_properties_test {
 namespace {
 
 /// A cross-section at height z: an ellipse of half axes (x, y), with a similar hole.
@@ -322,4 +322,4 @@ TEST(MassProperties, ScalingTheMassScalesTheInertia)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::mass_properties_test

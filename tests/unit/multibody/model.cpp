@@ -8,7 +8,7 @@
 
 #include "unit/multibody/random_states.h"
 
-namespace livens {
+namespace livens::model_test {
 namespace {
 
 const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -280,4 +280,4 @@ TEST(Model, WeightPullsAtTheCentreOfMass)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::model_test

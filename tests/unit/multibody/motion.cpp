@@ -9,7 +9,7 @@
 #include "livens/time/quadrature.h"
 #include "unit/multibody/random_states.h"
 
-namespace livens {
+namespace livens::motion_test {
 namespace {
 
 /// A field of one body that samples X(t) at its nodes.
@@ -280,4 +280,4 @@ TEST(Reaction, ReadsTheBodiesOfTheRowsNotOfTheirOrder)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::motion_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace livens {
+namespace livens::surface_loads_test {
 
 namespace {
 
@@ -145,4 +145,4 @@ TEST(SurfaceLoads, ForcesPerUnitMassActAsGravityDoes)
 
 }   // namespace
 
-}   // namespace livens
+}   // namespace livens::surface_loads_test

@@ -7,7 +7,7 @@
 #include "livens/multibody/model.h"
 #include "unit/multibody/random_states.h"
 
-namespace livens {
+namespace livens::turn_apart_test {
 namespace {
 
 /// A hinge between two bodies, whose directions across the axis are turned alike by `across`.
@@ -49,4 +49,4 @@ TEST(Joints, AnAngleThatLetsGoNeedsNoDirectionsAcrossItsAxis)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::turn_apart_test

@@ -13,7 +13,7 @@
 #include "livens/multibody/sensors.h"
 #include "unit/multibody/random_states.h"
 
-namespace livens {
+namespace livens::turning_joints_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -240,4 +240,4 @@ TEST(TurningJoints, AnglesOfABallAreAboutThreeAxes)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::turning_joints_test

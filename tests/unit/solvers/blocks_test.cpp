@@ -7,7 +7,7 @@
 
 #include "block_systems.h"
 
-namespace livens {
+namespace livens::blocks_test {
 namespace {
 
 TEST(BlockMatrix, GivesEveryBlockAPlaceOfItsOwn)
@@ -95,4 +95,4 @@ TEST(BlockStructure, IsRefusedWhereNodesElementsOrCountsDoNotFit)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::blocks_test

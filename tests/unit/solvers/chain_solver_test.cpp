@@ -12,7 +12,7 @@
 #include "livens/solvers/crew.h"
 #include "livens/solvers/linear_solver.h"
 
-namespace livens {
+namespace livens::chain_solver_test {
 namespace {
 
 /// Largest |A x - b| by |A| |x| + |b|, row by row.
@@ -451,4 +451,4 @@ TEST(ChainSolver, RefusesElementsThatShareMoreThanOneNode)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::chain_solver_test

@@ -8,7 +8,7 @@
 #include "livens/solvers/sparse.h"
 #include "sparse_matrices.h"
 
-namespace livens {
+namespace livens::condition_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -329,4 +329,4 @@ TEST(Norms, AreInfiniteWhereProductsOverflow)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::condition_test

@@ -16,7 +16,7 @@
 #include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 
-namespace livens {
+namespace livens::crew_test {
 namespace {
 
 TEST(Crew, HasAllItemsOnceInSharesThatFollowEachOther)
@@ -237,4 +237,4 @@ TEST(Crew, StopsInAllThreadsWhereNobodyWaitsAnyMore)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::crew_test

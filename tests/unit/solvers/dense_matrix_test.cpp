@@ -5,7 +5,7 @@
 #include "dense_matrices.h"
 #include "livens/solvers/dense_matrix.h"
 
-namespace livens {
+namespace livens::dense_matrix_test {
 namespace {
 
 TEST(DenseMatrix, IsZeroWhenItIsMadeAndStandsColumnByColumn)
@@ -111,4 +111,4 @@ TEST(DenseMatrix, ANumberThatIsNoneIsTheLargest)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::dense_matrix_test

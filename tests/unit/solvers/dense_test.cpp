@@ -9,7 +9,7 @@
 
 #include "livens/solvers/dense.h"
 
-namespace livens {
+namespace livens::dense_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -347,4 +347,4 @@ TEST(Cholesky, SolvesDefiniteSystemsAndRefusesOthers)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::dense_test

@@ -6,7 +6,7 @@
 #include "livens/solvers/factors.h"
 #include "short_memory.h"
 
-namespace livens {
+namespace livens::factors_test {
 namespace {
 
 /// A matrix of a rank.
@@ -228,4 +228,4 @@ TEST(FactorsDeathTest, RunOutOfMemoryByBadAllocAlone)
 #endif
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::factors_test

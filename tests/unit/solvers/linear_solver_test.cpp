@@ -14,7 +14,7 @@
 #include "block_systems.h"
 #include "livens/solvers/linear_solver.h"
 
-namespace livens {
+namespace livens::linear_solver_test {
 namespace {
 
 struct Case {
@@ -335,4 +335,4 @@ TEST(WholeSolver, TakesUpEntriesThatWereZeroBefore)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::linear_solver_test

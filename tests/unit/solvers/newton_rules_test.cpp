@@ -8,7 +8,7 @@
 #include "livens/solvers/newton.h"
 #include "newton_problems.h"
 
-namespace livens {
+namespace livens::newton_rules_test {
 namespace {
 
 TEST(NewtonRules, ConvergesWhereTheNextIncrementIsTheTolerance)
@@ -114,4 +114,4 @@ TEST(NewtonRules, GivesUpWhereTheShortestStepIsStillALongOne)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::newton_rules_test

@@ -11,7 +11,7 @@
 #include "livens/solvers/newton.h"
 #include "newton_problems.h"
 
-namespace livens {
+namespace livens::newton_test {
 namespace {
 
 NewtonReport converged(Equations& problem, double tolerance = 1e-12)
@@ -350,4 +350,4 @@ TEST(Newton, AllocatesNothingInTheSecondRun)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::newton_test

@@ -10,7 +10,7 @@
 #include "livens/solvers/dense.h"
 #include "livens/solvers/rank_borders.h"
 
-namespace livens {
+namespace livens::rank_borders_test {
 namespace {
 
 /// Rows of one rank in columns of the whole: borders one after the other, then others.
@@ -176,4 +176,4 @@ TEST(RankBorders, SingularRowsAreToldToAll)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::rank_borders_test

@@ -9,7 +9,7 @@
 
 #include "livens/solvers/rank_ends.h"
 
-namespace livens {
+namespace livens::rank_ends_test {
 namespace {
 
 constexpr int f = 3, n_elements = 13;
@@ -254,4 +254,4 @@ TEST(RankEnds, WhatIsSingularInOneIsSingularInAll)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::rank_ends_test

@@ -9,7 +9,7 @@
 #include "livens/solvers/instructions.h"
 #include "livens/solvers/row_functions.h"
 
-namespace livens {
+namespace livens::row_functions_test {
 namespace {
 
 struct Sums {
@@ -156,4 +156,4 @@ TEST(RowFunctions, AreThoseOfTheInstructionsInUse)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::row_functions_test

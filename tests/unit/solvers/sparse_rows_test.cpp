@@ -7,7 +7,7 @@
 #include "livens/solvers/sparse_rows.h"
 #include "short_memory.h"
 
-namespace livens {
+namespace livens::sparse_rows_test {
 namespace {
 
 std::vector<SparseEntry> entries_of(DenseView A)
@@ -143,4 +143,4 @@ TEST(SparseSolutionDeathTest, RunsOutOfMemoryByBadAllocAlone)
 #endif
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::sparse_rows_test

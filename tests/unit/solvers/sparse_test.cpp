@@ -11,7 +11,7 @@
 #include "short_memory.h"
 #include "sparse_matrices.h"
 
-namespace livens {
+namespace livens::sparse_test {
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -355,4 +355,4 @@ TEST(SparseLU, BackendsAgree)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::sparse_test

@@ -8,7 +8,7 @@
 #include "livens/solvers/spectral.h"
 #include "short_memory.h"
 
-namespace livens {
+namespace livens::spectral_test {
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -225,4 +225,4 @@ TEST(SpectraDeathTest, RunOutOfMemoryByBadAllocAlone)
 #endif
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::spectral_test

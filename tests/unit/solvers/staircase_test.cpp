@@ -12,7 +12,7 @@
 #include "livens/solvers/crew.h"
 #include "livens/solvers/staircase.h"
 
-namespace livens {
+namespace livens::staircase_test {
 namespace {
 
 /// Nodes of `width` unknowns that see their neighbours, and a border that sees both ends; a third is filled.
@@ -122,4 +122,4 @@ TEST(Staircase, TellsOfAColumnThatDependsOnOthers)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::staircase_test

@@ -8,7 +8,7 @@
 #include "livens/spacetime/nodal/window.h"
 #include <mechanisms.h>   // of all tests, not of this folder
 
-namespace livens::tests {
+namespace livens::tests::components_test {
 namespace {
 
 struct Case {
@@ -84,4 +84,4 @@ TEST(ComponentEquations, HaveAnExactTangent)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::components_test

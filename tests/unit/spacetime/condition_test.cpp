@@ -9,7 +9,7 @@
 #include "livens/spacetime/solve.h"
 #include "unit/spacetime/mechanisms.h"
 
-namespace livens {
+namespace livens::condition_test {
 namespace {
 
 Model flying_point()
@@ -191,4 +191,4 @@ TEST(ConditionNumber, IsLeftOutWhereTheMarchFailsOrNothingMoves)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::condition_test

@@ -11,7 +11,7 @@
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/solve.h"
 
-namespace livens {
+namespace livens::curve_test {
 namespace {
 
 constexpr int degree = 6;
@@ -90,4 +90,4 @@ TEST(Curve, PassesFoldsWhereTheWayTurnsBack)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::curve_test

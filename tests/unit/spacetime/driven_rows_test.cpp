@@ -11,7 +11,7 @@
 #include "sanitized.h"
 #include "unit/spacetime/kernel_comparison.h"
 
-namespace livens {
+namespace livens::driven_rows_test {
 namespace {
 
 /// A drive of a coordinate, a distance or a point, a slot, or a coupling of some coordinates.
@@ -103,4 +103,4 @@ TEST(MarchKernel, AgreesWithNewtonOnRowsThatFollowFunctions)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::driven_rows_test

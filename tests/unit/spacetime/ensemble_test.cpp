@@ -15,7 +15,7 @@
 #include "livens/base/error.h"
 #include "livens/multibody/joints.h"
 
-namespace livens {
+namespace livens::ensemble_test {
 namespace {
 
 Model pendulum(double angle)
@@ -150,4 +150,4 @@ TEST(RunInOrder, AsManyThreadsAsProcessorsByDefault)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::ensemble_test

@@ -10,7 +10,7 @@
 
 #include "livens/base/linear.h"
 
-namespace livens {
+namespace livens::extrapolation_test {
 namespace {
 
 using Place = std::array<double, 7>;
@@ -118,4 +118,4 @@ TEST(Extrapolation, ServesFromDegreeFourOn)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::extrapolation_test

@@ -9,7 +9,7 @@
 #include "livens/multibody/joints.h"
 #include "livens/spacetime/solve.h"
 
-namespace livens {
+namespace livens::extremes_test {
 namespace {
 
 struct Pendulum {
@@ -145,4 +145,4 @@ TEST(DenseInstants, KeepElementEndsAndResolveElements)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::extremes_test

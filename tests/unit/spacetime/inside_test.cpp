@@ -9,7 +9,7 @@
 #include "livens/multibody/loads/load_laws.h"
 #include "livens/spacetime/solve.h"
 
-namespace livens::tests {
+namespace livens::tests::inside_test {
 namespace {
 
 /// A point of 1 kg flies along x through a needle of force, F(x) = strength exp(-((x - place) / width)^2).
@@ -158,4 +158,4 @@ TEST(InsideLaws, ALayerAtTheStartIsSeenOfForcesThatAreOpaque)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::inside_test

@@ -9,7 +9,7 @@
 #include "livens/spacetime/elements/kernel_functions.h"
 #include "unit/spacetime/kernel_comparison.h"
 
-namespace livens {
+namespace livens::joint_motion_test {
 namespace {
 
 constexpr double least = 1e-6;
@@ -98,4 +98,4 @@ TEST(JointMotion, LeavesRowsThatHangTogetherAndFewNodesToOthers)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::joint_motion_test

@@ -20,7 +20,7 @@
 #include "unit/spacetime/kernel_comparison.h"
 #include "unit/spacetime/mechanisms.h"
 
-namespace livens {
+namespace livens::march_kernel_test {
 namespace {
 
 TEST(MarchKernel, AgreesWithNewtonOnRandomMechanisms)
@@ -249,4 +249,4 @@ TEST(MarchKernel, SolvesLongChains)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::march_kernel_test

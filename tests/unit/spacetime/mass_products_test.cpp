@@ -13,7 +13,7 @@
 #include "livens/dynamics/rows/twist.h"
 #include "livens/solvers/instructions.h"
 
-namespace livens {
+namespace livens::mass_products_test {
 namespace {
 
 /// A body with skew axes and one with its own, both with centres beside their points, and a point mass; and
@@ -119,4 +119,4 @@ TEST(MassProducts, AreThoseOfTheMassBetweenNodes)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::mass_products_test

@@ -15,7 +15,7 @@
 #include "livens/spacetime/mixed/tangent.h"
 #include "unit/spacetime/mechanisms.h"
 
-namespace livens {
+namespace livens::mixed_equations_test {
 namespace {
 
 using mixed::Equations;
@@ -289,4 +289,4 @@ TEST(MixedCoordinates, RefusesASingularMassByTheBodysName)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::mixed_equations_test

@@ -13,7 +13,7 @@
 #include "livens/spacetime/on_ranks.h"
 #include <mechanisms.h>   // those of all tests
 
-namespace livens {
+namespace livens::on_ranks_test {
 namespace {
 
 struct Case {
@@ -281,4 +281,4 @@ TEST(OnRanks, WhatOneCannotDoEndsAll)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::on_ranks_test

@@ -8,7 +8,7 @@
 #include "livens/multibody/body.h"
 #include "livens/multibody/joints.h"
 
-namespace livens::tests {
+namespace livens::tests::perturbations_test {
 namespace {
 
 /// Two rods on a wall, nearly in line, and a ball of 1e6 times their mass at their end.
@@ -51,4 +51,4 @@ TEST(Perturbations, RoundingOfAHeavyBodyDoesNotBendWhatHoldsIt)
 }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::perturbations_test

@@ -9,7 +9,7 @@
 #include "livens/spacetime/planned_phases.h"
 #include <mechanisms.h>   // of all tests, not of this folder
 
-namespace livens::tests {
+namespace livens::tests::phases_window_test {
 namespace {
 
 constexpr double end = 0.3, release = 0.17;
@@ -104,4 +104,4 @@ TEST(PhaseEquations, HaveAnExactTangent) { expect_exact_tangent(false); }
 TEST(PhaseEquations, HaveAnExactTangentFromAKnownStart) { expect_exact_tangent(true); }
 
 }   // namespace
-}   // namespace livens::tests
+}   // namespace livens::tests::phases_window_test

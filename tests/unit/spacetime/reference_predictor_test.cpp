@@ -10,7 +10,7 @@
 
 #include "livens/multibody/model.h"
 
-namespace livens {
+namespace livens::reference_predictor_test {
 namespace {
 
 using Turn = std::function<Matrix3(double)>;
@@ -155,4 +155,4 @@ TEST(ReferencePredictor, RefusesWhatItHasNoElementFor)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::reference_predictor_test

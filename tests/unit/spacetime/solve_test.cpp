@@ -11,7 +11,7 @@
 #include "livens/spacetime/solve.h"
 #include "unit/spacetime/mechanisms.h"
 
-namespace livens {
+namespace livens::solve_test {
 namespace {
 
 Model stone()
@@ -167,4 +167,4 @@ TEST(Solve, EveryStartIsCheckedAndClosed)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::solve_test

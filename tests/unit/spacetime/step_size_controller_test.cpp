@@ -10,7 +10,7 @@
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/spacetime/march/step_size_controller.h"
 
-namespace livens {
+namespace livens::step_size_controller_test {
 namespace {
 
 TEST(StepSizeController, TheErrorAndItsJumpAreInverse)
@@ -236,4 +236,4 @@ TEST(StepSizeController, ElementsVanishAtLast)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::step_size_controller_test

@@ -9,7 +9,7 @@
 #include "sanitized.h"
 #include "unit/spacetime/kernel_comparison.h"
 
-namespace livens {
+namespace livens::stiff_loads_test {
 namespace {
 
 /// Springs so stiff that steps of free bodies do not shrink: at coordinates of joints, between any two bodies
@@ -152,4 +152,4 @@ TEST(MarchKernel, AgreesWithNewtonOnRadauPoints)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::stiff_loads_test

@@ -16,7 +16,7 @@
 #include "livens/spacetime/solve.h"
 #include "unit/spacetime/mechanisms.h"
 
-namespace livens {
+namespace livens::tangent_test {
 namespace {
 
 using testing_models::everything;
@@ -309,4 +309,4 @@ TEST(Newton, HighDegreesConvergeOnLongElements)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::tangent_test

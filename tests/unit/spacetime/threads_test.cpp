@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "livens/base/error.h"
+#include "livens/multibody/loads.h"
 #include "livens/spacetime/solve.h"
 #include <mechanisms.h>   // those of all tests
 
-namespace livens {
+namespace livens::threads_test {
 namespace {
 
 struct Case {
@@ -32,9 +33,14 @@ std::vector<double> numbers_of(const Solution& solution)
         for (const State& state : {motion.at_end(e), motion.at(motion.mesh.ends[e] * 0.999)})
             for (const auto* matrices : {&state.X, &state.V})
                 for (const Matrix34& x : *matrices) numbers.insert(numbers.end(), x.a, x.a + 12);
+    for (const auto* matrices : {&motion.momenta, &motion.accelerations})
+        for (const Matrix34& x : *matrices) numbers.insert(numbers.end(), x.a, x.a + 12);
+    for (const auto* values : {&motion.multipliers.values, &motion.end_multipliers, &motion.load_angles})
+        numbers.insert(numbers.end(), values->begin(), values->end());
     const SolveReport& report = solution.report;
     numbers.insert(numbers.end(), {static_cast<double>(report.newton_iterations), report.residual_norm,
-                                   report.moved_by_rounding, report.arrival, solution.estimate.largest});
+                                   report.moved_by_rounding, report.arrival, solution.estimate.largest,
+                                   report.smallest_pivot});
     return numbers;
 }
 
@@ -54,6 +60,15 @@ State arrival(const Model& model, double end)
     return solution.motion.at_end(40);
 }
 
+/// A crank that turns against a spring which counts its turns, in a loop.
+Model wound_up()
+{
+    Model model = tests::four_bar();
+    const Joint& shaft = model.joints().front();
+    model.add_load(joint_spring("spring", shaft.coordinates[0], {0.02, 0.001, 0.3}, model.start().X));
+    return model;
+}
+
 std::vector<Case> cases()
 {
     std::vector<Case> all;
@@ -68,6 +83,8 @@ std::vector<Case> cases()
     of_places.at_start = of_places.at_end = mixed_ends.at_start = Known::positions;
     mixed_ends.at_end = Known::momenta;
     add("window from a state", tests::two_bricks(), of_start, 60, Lobatto{3, 0});
+    add("window of a loop with redundant rows and a spring", wound_up(), of_start, 90, Lobatto{4, 0});
+    add("windows of some elements", tests::cubes_on_rods(0.2), of_start, 90, Lobatto{4, 32});
     add("places at both ends", tests::hinged_links(), of_places, 60, Lobatto{4});
     add("places, then momenta, of cubes", tests::cubes_on_rods(0.2), mixed_ends, 50, Lobatto{5});
     add("a loop between places", tests::four_bar(), of_places, 40, Lobatto{3});
@@ -96,6 +113,26 @@ TEST(Threads, LeaveNoTraceInTheBitsOfMotions)
             EXPECT_EQ(std::memcmp(found.data(), expected.data(), found.size() * sizeof(double)), 0)
                 << one.name << ", " << threads << " threads";
         }
+    }
+}
+
+/// Elements that are too long for the motion: some in the middle are not believed, and what is left is told
+/// as one thread tells it.
+TEST(Threads, LeaveNoTraceWhereElementsAreRefused)
+{
+    const Model model = tests::two_bricks();
+    Conditions of_start;
+    of_start.start = model.start();
+    const Case one{"coarse", model, {of_start}, make_time_mesh(0, 24, 48), Lobatto{3, 0}};
+    const Solution alone = solved(one, 1);
+    const std::vector<double> expected = numbers_of(alone);
+    for (const int threads : {2, 3}) {
+        const Solution shared = solved(one, threads);
+        EXPECT_EQ(shared.report.message, alone.report.message);
+        EXPECT_EQ(shared.motion.n_elements(), alone.motion.n_elements());
+        const std::vector<double> found = numbers_of(shared);
+        ASSERT_EQ(found.size(), expected.size());
+        EXPECT_EQ(std::memcmp(found.data(), expected.data(), found.size() * sizeof(double)), 0) << threads;
     }
 }
 
@@ -133,4 +170,4 @@ TEST(Threads, ThatCannotBeAreRefused)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::threads_test

@@ -8,7 +8,7 @@
 
 #include "livens/spacetime/solve.h"
 
-namespace livens {
+namespace livens::verdict_test {
 namespace {
 
 /// A pendulum of length 2: a box on a rod, let go at the given angle from straight down.
@@ -287,4 +287,4 @@ TEST(Verdict, OfASpuriousMotionIsNeverConverged)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::verdict_test

@@ -12,7 +12,7 @@
 #include "livens/spacetime/march/windows.h"
 #include "unit/spacetime/mechanisms.h"
 
-namespace livens {
+namespace livens::windows_test {
 namespace {
 
 /// One unknown a window: x = its number of elements, from x = 0; windows longer than `longest` have no root,
@@ -489,4 +489,4 @@ TEST(Guess, FromManySizesOfRatesArrivesNearest)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::windows_test

@@ -12,7 +12,7 @@
 #include "livens/multibody/motion.h"
 #include "livens/time/time_laws.h"
 
-namespace livens {
+namespace livens::equilibrium_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -275,4 +275,4 @@ TEST(Equilibrium, InASingularPositionIsRefused)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::equilibrium_test

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace livens {
+namespace livens::frequencies_test {
 namespace {
 
 HighestFrequencies of(const Model& model) { return highest_frequencies(model, model.start()); }
@@ -179,4 +179,4 @@ TEST(Frequencies, AreNotMadeOfTheRoundingOfLargeLoads)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::frequencies_test

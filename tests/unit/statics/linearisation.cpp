@@ -15,7 +15,7 @@
 #include "livens/statics/equilibrium.h"
 #include "livens/statics/small_motions.h"
 
-namespace livens {
+namespace livens::linearisation_test {
 namespace {
 
 /// Row by row; tests see no other matrices.
@@ -327,4 +327,4 @@ TEST(StateMatrices, OfAPendulum)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::linearisation_test

@@ -11,7 +11,7 @@
 #include "livens/multibody/joints.h"
 #include "livens/statics/frequencies.h"
 
-namespace livens {
+namespace livens::rate_bounds_test {
 namespace {
 
 TEST(RateBounds, OfOneMassAreItsRates)
@@ -65,4 +65,4 @@ TEST(RateBounds, AreAboveWhatJointsLeaveOfRandomChains)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::rate_bounds_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-namespace livens {
+namespace livens::turning_vibrations_test {
 namespace {
 
 constexpr double spin = 3;
@@ -83,4 +83,4 @@ TEST(TurningVibrations, DoNotTurnAtRestOrAboutTheirSpring)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::turning_vibrations_test

@@ -9,9 +9,9 @@
 #include "livens/stepping/stepping.h"
 #include "stepping_models.h"
 
+namespace livens::march_test {
 namespace {
 
-using namespace livens;
 using namespace stepping_test;
 
 const SteppingRule rules[] = {SteppingRule::midpoint, SteppingRule::endpoint};
@@ -453,3 +453,4 @@ TEST(Stepping, UnequalStepsKeepTheOrder)
 }
 
 }   // namespace
+}   // namespace livens::march_test

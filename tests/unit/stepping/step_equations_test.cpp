@@ -14,11 +14,9 @@ static void PrintTo(SteppingRule rule, std::ostream* out)
     *out << (rule == SteppingRule::midpoint ? "midpoint" : "endpoint");
 }
 
-}   // namespace livens
-
+namespace step_equations_test {
 namespace {
 
-using namespace livens;
 using namespace stepping_test;
 
 /// Two bricks on a ball and a universal joint with a spring and damper, a torque in each frame, and a point
@@ -97,3 +95,5 @@ TEST(StepEquations, NamesTheRowThatIsWorst)
 }
 
 }   // namespace
+}   // namespace step_equations_test
+}   // namespace livens

@@ -10,7 +10,7 @@
 #include "livens/base/error.h"
 #include "livens/time/quadrature.h"
 
-namespace livens {
+namespace livens::basis_test {
 namespace {
 
 // Where long double is double, differentiation matrices and the references here round more.
@@ -198,4 +198,4 @@ TEST(LagrangeBasis, RefusesBadNodesAndDegrees)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::basis_test

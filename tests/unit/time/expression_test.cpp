@@ -12,7 +12,7 @@
 
 #include "livens/base/error.h"
 
-namespace livens {
+namespace livens::expression_test {
 namespace {
 
 double value(const std::string& text, double t = 0, std::vector<double> x = {})
@@ -369,4 +369,4 @@ TEST(Expression, StandsAnyText)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::expression_test

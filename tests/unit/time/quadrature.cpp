@@ -8,7 +8,7 @@
 
 #include "livens/base/error.h"
 
-namespace livens {
+namespace livens::quadrature_test {
 namespace {
 
 // Where long double is double, the computation itself rounds.
@@ -173,4 +173,4 @@ TEST(Quadrature, RefusesRulesThatDoNotExist)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::quadrature_test

@@ -10,7 +10,7 @@
 
 #include "livens/base/error.h"
 
-namespace livens {
+namespace livens::time_function_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -202,4 +202,4 @@ TEST(SplineTable, RefusesRepeatedTimes)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::time_function_test

@@ -9,7 +9,7 @@
 
 #include "livens/base/error.h"
 
-namespace livens {
+namespace livens::time_laws_test {
 namespace {
 
 /// Rates are central differences of values, and accelerations of rates.
@@ -88,4 +88,4 @@ TEST(TimeLaws, RefuseWhatIsNoLaw)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::time_laws_test

@@ -11,7 +11,7 @@
 
 #include "livens/base/error.h"
 
-namespace livens {
+namespace livens::time_mesh_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -119,4 +119,4 @@ TEST(TimeMesh, NamesWhatIsWrong)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::time_mesh_test

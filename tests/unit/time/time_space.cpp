@@ -14,7 +14,7 @@
 #include "livens/base/error.h"
 #include "livens/time/time_mesh.h"
 
-namespace livens {
+namespace livens::time_space_test {
 namespace {
 
 using Numbers = std::vector<double>;
@@ -524,4 +524,4 @@ TEST(ClampedKnots, FindTheEndOfAKinkAsTheMeshMergedIt)
 }
 
 }   // namespace
-}   // namespace livens
+}   // namespace livens::time_space_test
