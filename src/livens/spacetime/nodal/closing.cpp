@@ -138,20 +138,14 @@ bool NodalWindow::close_in_shares(const AcceptanceCriteria& criteria, const std:
     std::vector<Unseen> unseen(static_cast<std::size_t>(n));
     const auto written = record_.written();
     record_.make_room(std::min(mesh_end(0), mesh_end(n)), std::max(mesh_end(0), mesh_end(n)));
-    const auto close_one = [&](int slot, int begin, int end) {
+    in_shares(n, least_shared, [&](int slot, int begin, int end) {
         auto& share = shares[static_cast<std::size_t>(slot)];
         share.reset(new Share{{tables_, is_sparse()}, {tables_, system_.rule()}});   // which cannot be moved
         if (checks_.ignores_laws()) share->checks.ignore_laws();
         ElementCloser by{share->end, share->checks, share->report};
         share->is_believed = close_share(by, {begin, end}, criteria, momenta, unseen);
         share->closed = std::move(by.closed);
-    };
-    try {
-        in_shares(n, least_shared, close_one);
-    } catch (...) {   // stopped, or out of memory: nothing of it is in the motion
-        record_.forget_but(written);
-        throw;
-    }
+    });
     std::erase(shares, nullptr);
     if (!std::ranges::all_of(shares, [](const auto& share) { return share->is_believed; })) {
         record_.forget_but(written);
