@@ -25,7 +25,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// What is to be added, and how much that is.
 struct Increment {
-    Room& values;
+    std::vector<double>& values;
     double size = 0;
 };
 
