@@ -48,11 +48,19 @@ class Stops(ProgramTest):
     def whole_run(self, scenario):
         """CPU seconds of a run that nobody stops: signals come at parts of it, as fast as the machine and the program are.
         Beside other processes the same run takes up to twice as many, so that parts stay well below a half."""
-        program = subprocess.Popen([PROGRAM, "solve", scenario, "-q", "-o", "run.nc"], cwd=self.folder)
+        program = subprocess.Popen([PROGRAM, "solve", scenario, "-q", "-o", "whole.nc"], cwd=self.folder)
         _, status, used = os.wait4(program.pid, 0)
         program.returncode = os.waitstatus_to_exitcode(status)
         self.assertEqual(program.returncode, 0)
         return used.ru_utime + used.ru_stime
+
+    def assertStopsAtOnce(self, scenario, at, *options):
+        """Within 2 s of CPU time, where the motion below takes half a second; elsewhere, and beside other processes, within
+        four times of what it takes there and then."""
+        self.write("slowness.toml", FREE_BODY % (10000, 100000, "false"))
+        used = self.after_signal(scenario, at, *options)
+        if used >= 2:
+            self.assertLess(used, 4 * self.whole_run("slowness.toml"))
 
     def after_signal(self, scenario, at, *options):
         """CPU seconds that a run takes after SIGINT, which comes when it has used `at` of them."""
@@ -73,7 +81,7 @@ class Stops(ProgramTest):
         """Unstopped they take 30 s of CPU time and more, and the motion half a second."""
         self.write("run.toml", FREE_BODY % (10000, 100000, "true"))
         for at in (1.2, 2.5, 4):
-            self.assertLess(self.after_signal("run.toml", at), 2)
+            self.assertStopsAtOnce("run.toml", at)
             info = json.loads(self.expect(0, "info", "run.nc", "--json").out)
             self.assertEqual(info["status"], "cancelled")
 
@@ -81,7 +89,7 @@ class Stops(ProgramTest):
         self.write("run.toml", FREE_BODY % (40000, 400000, "false"))
         whole = self.whole_run("run.toml")
         for part in (0.05, 0.15, 0.3):
-            self.assertLess(self.after_signal("run.toml", part * whole), 2)
+            self.assertStopsAtOnce("run.toml", part * whole)
             self.expect(0, "info", "run.nc")
 
     def test_threads_of_one_motion_stop_at_once(self):
@@ -89,7 +97,7 @@ class Stops(ProgramTest):
         self.write("run.toml", FREE_BODY % (2000, 20000, "false") + 'family = "mixed"\ndegree = 1\nestimate = "none"\n')
         whole = self.whole_run("run.toml")
         for part in (0.05, 0.2, 0.35, 0.5):
-            self.assertLess(self.after_signal("run.toml", part * whole, "--threads", "2"), 2)
+            self.assertStopsAtOnce("run.toml", part * whole, "--threads", "2")
             self.expect(0, "info", "run.nc")   # whole, if short
             self.assertEqual([file.name for file in self.folder.iterdir() if file.name.endswith(".tmp")], [])
 
@@ -103,7 +111,7 @@ class Stops(ProgramTest):
         self.write("run.toml", text + "[time]\nend = 0.6\nelements = 6000\noutput = 0.01\n")
         whole = self.whole_run("run.toml")
         for part in (0.1, 0.3):
-            self.assertLess(self.after_signal("run.toml", part * whole), 2)
+            self.assertStopsAtOnce("run.toml", part * whole)
             self.expect(0, "info", "run.nc")
 
     def test_what_the_caller_ignores_stays_ignored(self):
