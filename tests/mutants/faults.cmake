@@ -229,7 +229,7 @@ livens_mutant(NAME radau_jump_at_the_end
 
 # The fastest damper of all bodies taken for that of every vibration.
 livens_mutant(NAME damper_of_another_body
-              FILE spacetime/accuracy/estimate.cpp
+              FILE spacetime/accuracy/shared_errors.cpp
               OLD [[one.rate < one.decay)]]
               NEW [[one.rate < highest_frequencies(model, motion.at_end(end)).dampers.rate)]]
               TESTS_OF convergence
@@ -945,6 +945,22 @@ livens_mutant(NAME unseen_forgotten
               NEW [[shifts_[b].rate += 0 * one.shift[b], shifts_[b].moment += 0 * since;]]
               TESTS_OF unit_spacetime
               MUST_FAIL InsideLaws.WhatNeitherSolutionSeesIsInTheEstimate)
+
+# A loss that rounding hides is told by its root, at rest as well.
+livens_mutant(NAME root_of_rounding
+              FILE spacetime/accuracy/shared_errors.cpp
+              OLD [[return is_hidden_ && root_ * width > jumps ? jumps / width : root_;]]
+              NEW [[return is_hidden_ && jumps < 0 ? jumps / width : root_;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Verdict.OfRestOnSpringsIsNotTheRootOfRounding)
+
+# What rounding may hide of a loss is taken for nothing.
+livens_mutant(NAME hidden_loss_is_none
+              FILE spacetime/accuracy/shared_errors.cpp
+              OLD [[std::max(whole.energy_loss, hidden)]]
+              NEW [[std::max(whole.energy_loss, 0 * hidden)]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL Verdict.OfVibrationsWhoseEnergyIsRoundingIsNoLessThanTheyAre)
 
 # The classical rules and mixed judge themselves.
 livens_mutant(NAME no_witness

@@ -219,6 +219,11 @@ double BalanceFigures::relative_energy_loss() const
     return relative(std::max(energy_loss, 0.0), moving_energy(), reference_energy);
 }
 
+double BalanceFigures::hidden_energy_loss() const
+{
+    return std::max(largest_energy_rise, rounding * reference_energy);
+}
+
 double BalanceFigures::moving_energy() const
 {
     double moving = largest_kinetic;

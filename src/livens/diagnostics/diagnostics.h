@@ -41,6 +41,7 @@ struct BalanceFigures {
     // has fallen by from start to end.
     double relative_energy_rise() const;
     double relative_energy_loss() const;
+    double hidden_energy_loss() const;   ///< J: no more than rounding, or than the energy has risen by
     /// Relative to largest_momentum or the largest impulse.
     double relative_linear_momentum_drift() const;
     /// Relative to largest_moment.

@@ -115,6 +115,32 @@ TEST(Verdict, OfEnergyThatRadauDampsIsARemark)
     EXPECT_TRUE(speaks_of(s.verdict.remarks, "has damped"));
 }
 
+/// What the second solution tells of a mass that hangs on a spring, and is pulled down, by long elements.
+double told_of_hanging(double stiffness, double pulled)
+{
+    Model model({0, 0, -9.81});
+    model.add_body(point_mass("mass", 0.7, {0.3, 0.1, -(1 + 0.7 * 9.81 / stiffness) - pulled}));
+    model.add_load(spring_damper("spring", world, {0.3, 0.1, 0}, 0, {}, {stiffness, 0, 1}));
+    const TimeMesh mesh = make_time_mesh(0, 20, 20);
+    SolveOptions options;
+    options.estimate = SolveOptions::Estimate::second;
+    return solve(model, {model.start()}, mesh, Radau{5}, options).estimate.largest;
+}
+
+TEST(Verdict, OfRestOnSpringsIsNotTheRootOfRounding)
+{
+    for (double stiffness = 50; stiffness < 2000; stiffness *= 1.2)
+        EXPECT_LT(told_of_hanging(stiffness, 0), 1e-11) << stiffness;
+}
+
+TEST(Verdict, OfVibrationsWhoseEnergyIsRoundingIsNoLessThanTheyAre)
+{
+    for (const double pulled : {1e-6, 1e-8, 1e-9, 1e-10, 1e-11}) {
+        EXPECT_GT(told_of_hanging(1000, pulled), 0.9 * pulled);
+        EXPECT_LT(told_of_hanging(1000, pulled), 1000 * pulled);
+    }
+}
+
 // The same motion, but that its energy rises from its lowest by a tenth of the largest: no balance with the
 // start tells.
 TEST(Verdict, OfEnergyThatRadauGainsIsSuspect)

@@ -21,10 +21,8 @@
 #include "livens/spacetime/accuracy/reference_solution.h"
 #include "livens/spacetime/ensemble.h"
 #include "livens/spacetime/march/ends.h"
-#include "livens/spacetime/phases/events.h"
 #include "livens/spacetime/rotating.h"
 #include "livens/spacetime/solve_mesh.h"
-#include "livens/statics/frequencies.h"
 
 namespace livens {
 
@@ -117,116 +115,6 @@ void ReferenceSolution::tell_numbers(FoundNumbers& first) const
                      left = i < first.left.size() ? first.left[i] : 0;   // at a bound that both come to
         first.errors[i] = std::max({std::abs(numbers_[i] - first.values[i]), rounding, left});
     }
-}
-
-namespace {
-
-/// Of the joints that act before an element end.
-std::vector<Vibration> vibrations_beside(const Model& model, const Motion& motion, int end)
-{
-    if (!model.has_events()) return vibrations(model, motion.at_end(end));
-    const int element = std::max(end - 1, 0);
-    const double middle = motion.mesh.ends[element] + 0.5 * motion.mesh.length(element);
-    return vibrations(acting_at(model, middle).model, motion.at_end(end));
-}
-
-/// Element ends where events are.
-std::vector<int> event_ends(const Model& model, const Motion& motion)
-{
-    std::vector<int> ends;
-    for (const double t : model.event_times()) {
-        const int end = element_end_at(motion.mesh, snap_to_element_end(motion.mesh, t));
-        if (end > 0 && end < motion.n_elements()) ends.push_back(end);
-    }
-    return ends;
-}
-
-/// Adds what grows from an event on: errors of place, and of rates that go on.
-void add_from(int event, const ActivationMismatch& off, const Model& model, const Motion& motion,
-              ErrorEstimate& found)
-{
-    const auto n = static_cast<std::size_t>(found.n_bodies);
-    for (std::size_t i = static_cast<std::size_t>(event) * n; i < found.position.size(); ++i) {
-        const double since = motion.mesh.ends[i / n] - motion.mesh.ends[event];
-        found.position[i] += off.shift + off.speed * since;
-        if (!model.bodies()[i % n].is_point) found.orientation[i] += off.turn + off.spin * since;
-        found.velocity[i] += off.speed * found.length;
-    }
-    found.find_largest(motion.mesh);
-}
-
-}   // namespace
-
-void spacetime_internal::add_events(const Model& model, const Motion& motion, ErrorEstimate& found)
-{
-    if (!model.has_events() || found.empty()) return;
-    const std::vector<double> jumps = velocity_jumps(model, motion);
-    const double root = motion.damps() ? std::sqrt(2 * std::max(balance(model, motion).energy_loss, 0.0)) : 0;
-    int before = 0;
-    for (const int event : event_ends(model, motion)) {
-        ActivationMismatch off = activation_mismatch(model, motion, event);
-        double slowest = std::numeric_limits<double>::infinity(), shift = 0, turn = 0;
-        for (const Vibration& one : vibrations_beside(model, motion, event)) {
-            if (one.rate * motion.mesh.length(event - 1) < motion.X.degree || one.decay > one.rate) continue;
-            slowest = std::min(slowest, one.rate);
-            raise_to(shift, one.shift);
-            raise_to(turn, one.turn);
-        }
-        if (motion.damps()) {
-            off.speed += root * shift / found.length;
-            off.spin += root * turn;
-        }
-        const bool is_unresolved = std::isfinite(slowest) && !motion.damps();
-        for (int e = before; e < event && is_unresolved; ++e) {
-            const double h = motion.mesh.length(e);
-            if (slowest * h < motion.X.degree) continue;
-            raise_to(off.speed, jumps[e] / h);
-            raise_to(off.spin, jumps[e] / h);
-        }
-        add_from(event, off, model, motion, found);
-        before = event;
-    }
-}
-
-void spacetime_internal::add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate& found)
-{
-    if (!motion.damps() || found.empty()) return;
-    double longest = 0;
-    for (int e = 0; e < motion.n_elements(); ++e) raise_to(longest, motion.mesh.length(e));
-    double shift = 0, turn = 0, speed = 0;   // by the root of twice the energy
-    for (const int end : {0, motion.n_elements() / 2, motion.n_elements()}) {
-        for (const Vibration& one : vibrations_beside(model, motion, end)) {
-            if (one.rate * longest < motion.X.degree || one.rate < one.decay) continue;
-            raise_to(shift, one.shift / one.rate);
-            raise_to(turn, one.turn / one.rate);
-            raise_to(speed, one.shift);
-        }
-    }
-    if (shift == 0 && turn == 0) return;
-    const double root = std::sqrt(2 * std::max(balance(model, motion).energy_loss, 0.0));
-    for (double& error : found.position) error += root * shift / found.length;
-    for (double& error : found.velocity) error += root * speed;
-    for (std::size_t i = 0; i < found.orientation.size(); ++i)
-        if (!model.bodies()[i % model.bodies().size()].is_point) found.orientation[i] += root * turn;
-    found.find_largest(motion.mesh);
-}
-
-void spacetime_internal::add_inside(const Model& model, const Motion& motion,
-                                    const std::vector<double>& instants, ErrorEstimate& found)
-{
-    if (instants.empty() || found.empty()) return;
-    const std::vector<double> jumps = velocity_jumps(model, motion);
-    const auto n = static_cast<std::size_t>(found.n_bodies);
-    for (const double t : instants) {
-        const int e = motion.mesh.element_at(t);
-        for (std::size_t i = static_cast<std::size_t>(e) * n; i < (static_cast<std::size_t>(e) + 2) * n;
-             ++i) {
-            raise_to(found.position[i], jumps[e]);
-            if (!model.bodies()[i % n].is_point) raise_to(found.orientation[i], jumps[e]);
-            raise_to(found.velocity[i], jumps[e] * found.length / motion.mesh.length(e));
-        }
-    }
-    found.find_largest(motion.mesh);
 }
 
 namespace {
