@@ -38,13 +38,13 @@ PLACES = {"upper": ("[0, 0, 0]", "[0, 0, 0]", (0, 0, 0)),   # of the upper end, 
                     (-2.119390740461563, 2.3512809763801803, 0.05778473716676569))}
 
 
-def scenario(is_march: bool) -> str:
+def scenario(is_march: bool, share: float = 0.9) -> str:
     text = ["format = 1\ngravity = [0, 0, -9.81]\ntime = { end = 0.5, elements = 10 }",
             'method = { family = "lobatto", degree = 8 }']
     text += ['start = { initial = "project" }'] if is_march else ['start = { given = "positions" }', 'end = { given = "positions" }']
     for name, (first, last, spin) in BODIES.items():
         place, place_at_end, velocity = PLACES[name]
-        rates = [[v * (1 if is_march else 0.9) for v in values] for values in (velocity, spin)]
+        rates = [[v * (1 if is_march else share) for v in values] for values in (velocity, spin)]
         text.append(f'[[body]]\nname = "{name}"\nshape = {{ box = [1, 0.2, 0.1] }}\nmass = 1\ncenter_of_mass = [0.5, 0, 0]\n'
                     + ("position = [0, 0, 0]" if name == "upper" else
                        "position = [1, 0, 0]\ndirectors = [[0, 1, 0], [-1, 0, 0], [0, 0, 1]]")

@@ -19,7 +19,6 @@ void DenseLU::resize(int n)
     n_ = n;
     a_.assign(count(n, n), 0.0);
     pivot_.assign(static_cast<std::size_t>(n), 0);
-    permuted_.assign(static_cast<std::size_t>(n), 0.0);
 }
 
 /// Brings the row with the largest entry in column k of rows k.. to place k.
@@ -85,10 +84,11 @@ void DenseLU::solve(double* x) const
     for (int k = 0; k < n_; ++k) {
         if (pivot_[k] != k) std::swap(x[k], x[pivot_[k]]);
     }
-    for (int i = 1; i < n_; ++i) x[i] -= inner(row(i), x, i);
+    const RowFunctions& rows = row_functions();
+    for (int i = 1; i < n_; ++i) x[i] -= inner(rows, row(i), x, i);
     for (int i = n_ - 1; i >= 0; --i) {
         const double* r = row(i);
-        x[i] = (x[i] - inner(r + i + 1, x + i + 1, n_ - i - 1)) / r[i];
+        x[i] = (x[i] - inner(rows, r + i + 1, x + i + 1, n_ - i - 1)) / r[i];
     }
 }
 

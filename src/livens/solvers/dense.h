@@ -5,7 +5,6 @@
 // after `resize` and leave exact zeros exact (a planar motion stays planar to the bit).
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -50,7 +49,6 @@ private:
     int failed_ = -1;
     std::vector<double> a_;
     std::vector<int> pivot_;
-    mutable std::vector<double> permuted_;
 };
 
 /// Of an OrthogonalBasis.
@@ -63,6 +61,7 @@ struct Reflection {
     int reach = 0;       // rows from here on it leaves alone, the exchange included
     int all_reach = 0;   // likewise this one and all before it
     int used = -1;       // how many entries are not zero, if they are few; else -1
+    int filled_first = 0, filled_end = 0;   // of the column before factorise(), what may not be zero
 };
 
 /// QR of a tall matrix, given by its k columns of length n, by Householder reflections: A = Q [R; 0].
@@ -81,7 +80,11 @@ public:
     double* column(int j) { return g_.data() + j * stride_; }
 
     /// Entries of column j that may not be zero, first..end - 1: else it is looked through by factorise().
-    void reach_of(int j, int first, int end) { ranges_[static_cast<std::size_t>(j)] = {first, end}; }
+    void reach_of(int j, int first, int end)
+    {
+        reflections_[static_cast<std::size_t>(j)].filled_first = first;
+        reflections_[static_cast<std::size_t>(j)].filled_end = end;
+    }
 
     /// Factorises the first k columns in their order. Returns the smallest |R_jj| (1 if k = 0).
     /// `keep_choices` leads with the entries, and takes the signs, of the last call, so that the basis varies
@@ -114,9 +117,7 @@ private:
     std::ptrdiff_t stride_ = 0;   // room for a register behind each column
     std::vector<double> g_;   // R above the diagonal, reflectors (first entry 1 implied) below
     std::vector<Reflection> reflections_;
-    std::vector<std::array<int, 2>> ranges_;   // of columns: entries that may not be zero
-    std::vector<int> places_;                  // of their entries that are not zero, n a reflection
-    mutable std::vector<double> scratch_;
+    std::vector<int> places_;   // of their entries that are not zero, n a reflection
 };
 
 /// Cholesky factorisation of a symmetric positive definite matrix stored row by row.

@@ -25,7 +25,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// What is to be added, and how much that is.
 struct Increment {
-    std::vector<double>& values;
+    Room& values;
     double size = 0;
 };
 

@@ -4,9 +4,9 @@
 
 #include <functional>
 #include <span>
-#include <vector>
 
 #include "livens/solvers/report.h"
+#include "livens/solvers/room.h"
 
 namespace livens::inline solvers_internal {
 
@@ -105,7 +105,7 @@ public:
     NewtonReport run(NewtonProblem& problem, const NewtonOptions& options);
 
 private:
-    std::vector<double> increment_, next_;
+    Room increment_, next_;
 };
 
 }   // namespace livens::inline solvers_internal

@@ -29,10 +29,10 @@ void OrthogonalBasis::resize(int n, int most)
     k_ = 0;
     stride_ = n + register_room;
     g_.assign(static_cast<std::size_t>(most) * static_cast<std::size_t>(stride_), 0.0);
-    reflections_.assign(static_cast<std::size_t>(most), {});
-    ranges_.assign(static_cast<std::size_t>(most), {0, n});
+    Reflection of_whole_column;
+    of_whole_column.filled_end = n;
+    reflections_.assign(static_cast<std::size_t>(most), of_whole_column);
     places_.assign(count(n, most), 0);
-    scratch_.assign(static_cast<std::size_t>(n), 0.0);
 }
 
 /// Brings the largest of the entries j..end - 1 of column j to place j; the others are zero.
@@ -120,7 +120,7 @@ inline void OrthogonalBasis::reflect_only(int j, double* x, const RowFunctions& 
 int OrthogonalBasis::reflect_by_those_before(int j, const RowFunctions& rows)
 {
     double* x = column(j);
-    auto [first, end] = ranges_[static_cast<std::size_t>(j)];   // what is not zero
+    int first = reflections_[j].filled_first, end = reflections_[j].filled_end;   // what is not zero
     while (end > 0 && x[end - 1] == 0) --end;
     while (first < end && x[first] == 0) ++first;
     // Up to which row the reflections 0..i reach together goes up with i.
@@ -146,7 +146,7 @@ int OrthogonalBasis::reflect_by_those_before(int j, const RowFunctions& rows)
 int OrthogonalBasis::reflect_by_all_before(int j, const RowFunctions& rows)
 {
     double* x = column(j);
-    auto [first, end] = ranges_[static_cast<std::size_t>(j)];
+    int first = reflections_[j].filled_first, end = reflections_[j].filled_end;
     int i = 0;
     while (i < j && reflections_[i].all_reach <= first) ++i;   // which reach no row
     if (i < j) {
@@ -287,22 +287,17 @@ void OrthogonalBasis::null_space(double* z) const
     }
 }
 
-/// Reflection j of the rows of z, whose row j is zero.
+/// Reflection j of the rows of z, whose row j is zero and becomes what the others get of it.
 void OrthogonalBasis::reflect_rows(int j, double* z, const RowFunctions& rows) const
 {
     const int f = n_ - k_;
-    double* w = scratch_.data();
     const double* v = column(j);
-    std::fill(w, w + f, 0.0);
-    for (int i = j + 1; i < reflections_[j].end; ++i)
-        if (v[i] != 0) subtract_scaled(rows, w, -v[i], z + count(i, f), f);
     double* zj = z + count(j, f);
-    for (int c = 0; c < f; ++c) {
-        w[c] *= reflections_[j].beta;
-        zj[c] = -w[c];
-    }
     for (int i = j + 1; i < reflections_[j].end; ++i)
-        if (v[i] != 0) subtract_scaled(rows, z + count(i, f), v[i], w, f);
+        if (v[i] != 0) subtract_scaled(rows, zj, v[i], z + count(i, f), f);
+    for (int c = 0; c < f; ++c) zj[c] *= reflections_[j].beta;
+    for (int i = j + 1; i < reflections_[j].end; ++i)
+        if (v[i] != 0) subtract_scaled(rows, z + count(i, f), -v[i], zj, f);
 }
 
 }   // namespace livens

@@ -31,7 +31,7 @@ double InstantSystem::move_towards_rows(InstantState& state)
     if (state.held.by_joints) {
         state.held.joints.project(y, row_rates_.data(), rest);
     } else {
-        for (int c = 0; c < tables_.rank; ++c) y[c] = row_rates_[c] * basis.row_scale[c];
+        for (int c = 0; c < tables_.rank; ++c) y[c] = row_rates_[c] * basis.row_scale(c);
         basis.q.solve_R_transposed(y);
         std::fill_n(rest, tables_.n_twists, 0.0);
         solve(state, rest, y);

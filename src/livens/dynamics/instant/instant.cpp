@@ -40,6 +40,23 @@ void InstantState::resize(const ModelTables& tables)
     held.has_basis = false;
 }
 
+void InstantState::take(const InstantState& other)
+{
+    t = other.t;
+    has_past = other.has_past;
+    held.rows = other.held.rows;
+    held.are_new = held.has_basis = false;
+    for (const auto field :
+         {&InstantState::angles, &InstantState::X, &InstantState::X_low, &InstantState::maps,
+          &InstantState::velocity, &InstantState::p, &InstantState::momentum, &InstantState::jerk,
+          &InstantState::snap})
+        this->*field = other.*field;
+    for (const int side : {0, 1}) {
+        acceleration[side] = other.acceleration[side];
+        multipliers[side] = other.multipliers[side];
+    }
+}
+
 void InstantState::look_back(const InstantState& earlier, bool forwards)
 {
     has_past = true;
@@ -191,7 +208,7 @@ void InstantSystem::scatter(const InstantState& state, double* y, double weight,
     }
     const ConstraintBasis& basis = state.held.basis;
     basis.q.solve_R(y);
-    for (int c = 0; c < tables_.rank; ++c) lambda[basis.rows[c]] = y[c] * basis.row_scale[c] / weight;
+    for (int c = 0; c < tables_.rank; ++c) lambda[basis.rows[c]] = y[c] * basis.row_scale(c) / weight;
 }
 
 /// M y + Ghat^T lambda = forces and Ghat y = (what y holds in its first `rank` places, as Q^T y); all scaled.
@@ -271,7 +288,7 @@ void InstantSystem::follow_drives(const InstantState& state, double* y) const
     std::fill(y, y + tables_.rank, 0.0);
     if (!tables_.model->has_drives()) return;
     for (int c = 0; c < tables_.rank; ++c)
-        y[c] = -tables_.rows.rate(basis.rows[c], {state.t}, state.X.data()) * basis.row_scale[c];
+        y[c] = -tables_.rows.rate(basis.rows[c], {state.t}, state.X.data()) * basis.row_scale(c);
     basis.q.solve_R_transposed(y);
 }
 
@@ -288,7 +305,7 @@ void InstantSystem::particular(const InstantState& state, Side from, double* y) 
             for (const int column : table.columns[side])
                 for (int i = 0; i < 3; ++i) gamma += g[12 * side + column + i] * a[column + i];
         }
-        y[c] = -gamma * basis.row_scale[c];
+        y[c] = -gamma * basis.row_scale(c);
     }
     basis.q.solve_R_transposed(y);
 }

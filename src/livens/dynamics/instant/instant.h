@@ -40,6 +40,8 @@ struct InstantState {
     HeldRows held;
 
     void resize(const ModelTables& tables);
+    /// All but what its rows hold: they are the same, and have to be prepared.
+    void take(const InstantState& other);
     /// jerk and snap of the cubic through velocity and acceleration here and at an earlier end; for guesses.
     /// `forwards`: the earlier end has the smaller t.
     void look_back(const InstantState& earlier, bool forwards);
@@ -55,6 +57,12 @@ public:
 
     /// Whether no law of a load is near a bend, see LoadsAtInstant.
     void trust_tapes(bool are_trusted) { tapes_are_trusted_ = are_trusted; }
+    /// Trusts and chooses rows as another one, which is where this one begins, would from now on.
+    void choose_as(const InstantSystem& other)
+    {
+        tapes_are_trusted_ = other.tapes_are_trusted_;
+        pivot_at_choice_ = other.pivot_at_choice_;
+    }
 
     /// Prepares maps and what constraints hold at state.t and state.X, with the given independent rows as
     /// long as they are fit: the others hold to 1e-9 of their scale, and the smallest scaled pivot is above

@@ -13,15 +13,14 @@ void ConstraintBasis::resize(const ModelTables& tables, bool all_rows)
     const int most = all_rows ? tables.n_rows() : tables.rank;
     q.resize(tables.n_twists, most);
     rows.assign(static_cast<std::size_t>(tables.rank), 0);
-    row_scale.assign(static_cast<std::size_t>(most), 1.0);
     longest_gradient = tables.rows.longest_gradient();
-    gradients.assign(static_cast<std::size_t>(longest_gradient * most), 0.0);
+    gradients.assign(static_cast<std::size_t>((longest_gradient + 1) * most), 0.0);
 }
 
-double ConstraintBasis::fill(const ModelTables& tables, int column, int row, Instant at, const double* X,
-                             const double* maps)
+void ConstraintBasis::fill(const ModelTables& tables, int column, int row, Instant at, const double* X,
+                           const double* maps)
 {
-    double* g = gradients.data() + longest_gradient * column;
+    double* g = gradients.data() + (longest_gradient + 1) * column;
     double* out = q.column(column);
     tables.rows.gradient(row, at, X, g);
     const double square = tables.scaled_gradient(row, X, maps, g, out);
@@ -30,14 +29,14 @@ double ConstraintBasis::fill(const ModelTables& tables, int column, int row, Ins
     const auto [first, end] = tables.reaches[row];
     for (int i = first; i < end; ++i) out[i] *= scale;
     q.reach_of(column, first, end);
-    return scale;
+    g[longest_gradient] = scale;
 }
 
 double ConstraintBasis::build(const ModelTables& tables, Instant at, const double* X, const double* maps,
                               const std::vector<int>& which, bool keep_choices)
 {
     rows = which;
-    for (int c = 0; c < tables.rank; ++c) row_scale[c] = fill(tables, c, which[c], at, X, maps);
+    for (int c = 0; c < tables.rank; ++c) fill(tables, c, which[c], at, X, maps);
     return smallest_pivot = q.factorise(tables.rank, keep_choices);
 }
 
@@ -45,15 +44,14 @@ double ConstraintBasis::choose(const ModelTables& tables, Instant at, const doub
 {
     const int all = tables.n_rows();
     std::vector<int> order(static_cast<std::size_t>(all));
-    for (int r = 0; r < all; ++r) row_scale[r] = fill(tables, r, r, at, X, maps);
+    for (int r = 0; r < all; ++r) fill(tables, r, r, at, X, maps);
     // Column exchanges choose the rows that hold best here; their number is known from the start.
     smallest_pivot = q.factorise_pivoted(tables.rank, order);
-    const std::vector<double> unsorted = gradients, scales = row_scale;
+    const std::vector<double> unsorted = gradients;
+    const int of_row = longest_gradient + 1;
     for (int c = 0; c < tables.rank; ++c) {
         rows[c] = order[c];
-        row_scale[c] = scales[order[c]];
-        std::copy_n(unsorted.begin() + longest_gradient * order[c], longest_gradient,
-                    gradients.begin() + longest_gradient * c);
+        std::copy_n(unsorted.begin() + of_row * order[c], of_row, gradients.begin() + of_row * c);
     }
     return smallest_pivot;
 }

@@ -13,13 +13,13 @@ namespace livens::inline dynamics_internal {
 struct ConstraintBasis {
     OrthogonalBasis q;               ///< of the columns D^T Ghat^T / s
     std::vector<int> rows;           ///< rank rows of the tables, in the order of the columns
-    std::vector<double> row_scale;   ///< 1 / s, in the same order
     int longest_gradient = 0;
-    std::vector<double> gradients;   ///< so many numbers a row, in the same order
+    std::vector<double> gradients;   ///< so many numbers a row, and its 1 / s, in the same order
 
     double smallest_pivot = 1;   ///< of the last build() or choose()
 
-    const double* gradient(int column) const { return gradients.data() + longest_gradient * column; }
+    const double* gradient(int column) const { return gradients.data() + (longest_gradient + 1) * column; }
+    double row_scale(int column) const { return gradient(column)[longest_gradient]; }
     void resize(const ModelTables& tables, bool all_rows);
     /// The basis for given rows. Returns the smallest scaled pivot.
     double build(const ModelTables& tables, Instant at, const double* X, const double* maps,
@@ -28,7 +28,7 @@ struct ConstraintBasis {
     double choose(const ModelTables& tables, Instant at, const double* X, const double* maps);
 
 private:
-    double fill(const ModelTables& tables, int column, int row, Instant at, const double* X,
+    void fill(const ModelTables& tables, int column, int row, Instant at, const double* X,
                 const double* maps);
 };
 

@@ -12,6 +12,7 @@
 
 #include "livens/base/text.h"
 #include "livens/diagnostics/sample.h"
+#include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 
 namespace livens::inline spacetime_internal {
@@ -23,6 +24,7 @@ constexpr double doubtful_distance = 0.05;
 
 /// How often in succession nodes are moved off singular positions.
 constexpr int most_shifts = 3;
+constexpr int least_compared = 32;   // element ends that a thread takes
 
 /// What a tangent may cost, in elements without one, before shorter elements are tried instead: where lengths
 /// are free, where they were stated, and where shorter ones did not help so often in succession.
@@ -184,9 +186,14 @@ bool March::ends_at_bend(const Elements& of)
 
 void March::compare(const Elements& of)
 {
-    for (int end = of.first; end <= of.last; ++end) {
-        const double distance =
+    std::vector<double> distances(static_cast<std::size_t>(of.size() + 1));
+    for_each_item(of.size() + 1, least_compared, [&](int i) {
+        const int end = of.first + i;
+        distances[i] =
             distance_between(window_.at(end).X, attempt_.guess(mesh_.ends[end]).X, options_.length_of_model);
+    });
+    for (int end = of.first; end <= of.last; ++end) {
+        const double distance = distances[end - of.first];
         if (!(distance > report_.guess_distance)) continue;
         if (report_.guess_distance <= doubtful_distance) report_.guess_distance_time = mesh_.ends[end];
         report_.guess_distance = distance;

@@ -128,7 +128,7 @@ double ElementChecks::bend(const NodalSystem& system, double until)
     return switching_points_.first(system.layout(), system.nodes(), until);
 }
 
-void ElementChecks::take(const Nodes& nodes, int e, Unseen unseen)
+void ElementChecks::take(const Nodes& nodes, int e, Unseen&& unseen)
 {
     if (unseen.load >= 0) unseen_.push_back(std::move(unseen));
     for (int A = e * degree_; A <= (e + 1) * degree_; ++A)

@@ -29,6 +29,7 @@ public:
     bool are_laws_calm() const { return calm_.are_all(); }
     /// Laws of loads are not inspected between load points.
     void ignore_laws() { inside_.reset(); }
+    bool ignores_laws() const { return !inside_; }
     /// The velocity jump h |V - X_h'| at the end of an element (radau: at its start), as velocity_jump() of
     /// diagnostics has it; infinite where a body turns by more than 90 degrees from node to node, if that is
     /// refused.
@@ -45,7 +46,7 @@ public:
     std::string jumping_load() const { return switching_points_.jumping_load(); }
 
     /// The element is believed.
-    void take(const Nodes& nodes, int e, Unseen unseen);
+    void take(const Nodes& nodes, int e, Unseen&& unseen);
     std::vector<Unseen> take_unseen() { return std::move(unseen_); }
     /// Of all that were taken.
     double smallest_pivot() const { return smallest_pivot_; }

@@ -9,6 +9,7 @@
 
 #include "livens/base/text.h"
 #include "livens/multibody/body.h"
+#include "livens/solvers/crew.h"
 #include "livens/spacetime/nodal/kernel/march_kernel.h"
 #include "livens/spacetime/nodal/system.h"
 
@@ -106,37 +107,65 @@ bool ElementEnd::find_first(NodalSystem& system)
 
 void ElementEnd::begin(const double* impulses) { std::copy_n(impulses, tables_.rank, impulse_.data()); }
 
-/// The momentum at the end of an element from the balance of all its rows, which with lobatto is its last row
-/// once the others are solved:
+/// What the rows of an element add to the momentum at its start:
 ///
 ///     p = p_0 + sum_A f_A,      s = s_0 + sum_A tau_A
 ///
 /// with wrenches (f_A, tau_A) of loads and multipliers about the centres of mass (docs/theory.md, "The
-/// element"). The last row itself would carry the rounding of k_AB / h and the residual of Newton's
-/// iteration.
-void ElementEnd::sum_momentum(const NodalSystem& system, int e)
+/// element"). With lobatto that is its last row once the others are solved. The last row itself would carry
+/// the rounding of k_AB / h and the residual of Newton's iteration.
+void ElementEnd::add_wrenches(const NodalSystem& system, int e, std::span<double> raw,
+                              std::span<double> wrench, double* sum) const
 {
     const Nodes& nodes = system.nodes();
     const NodalRows& rows = system.balances();
     const int p = system.rule().degree, without = node_without(system.rule());
     const double h = system.layout().h(e);
     const bool has_loads = !tables_.model->loads().empty();
-    std::vector<double>& sum = momentum_;
-    sum = here().p;
     for (const auto& body : tables_.bodies)   // the weight has no moment about the centre
         for (int i = 0; i < 3; ++i) sum[body.first + i] += h * body.weight[i];
     for (int a = 0; a <= p; ++a) {
         const int A = e * p + a;
         if (a == without && !has_loads) continue;
         if (has_loads)
-            std::copy_n(rows.loads().forces(e, a), raw_.size(), raw_.begin());
+            std::copy_n(rows.loads().forces(e, a), raw.size(), raw.begin());
         else
-            std::ranges::fill(raw_, 0.0);
+            std::ranges::fill(raw, 0.0);
         if (a != without)
-            rows.subtract(nodes.basis(A), a == 0 ? impulse_.data() : rows.impulses(A), raw_.data());
-        tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), raw_.data(), wrench_.data());
-        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += wrench_[i];
+            rows.subtract(nodes.basis(A), A == 0 ? impulse_.data() : rows.impulses(A), raw.data());
+        tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), raw.data(), wrench.data());
+        for (std::size_t i = 0; i < wrench.size(); ++i) sum[i] += wrench[i];
     }
+}
+
+/// The impulse at a shared node counts whole in the element behind it: what the projection at the end of the
+/// one before has taken off, it takes less (pass_on()). So ends need not wait for each other's projections.
+std::vector<double> ElementEnd::momenta(const NodalSystem& system) const
+{
+    const int n = system.layout().n_elements();
+    const std::size_t size = momentum_.size();
+    std::vector<double> sums(static_cast<std::size_t>(n) * size, 0.0);
+    in_shares(n, least_shared, [&](int, int begin, int end) {
+        std::vector<double> raw(raw_.size()), wrench(size);
+        for (int e = begin; e < end; ++e) add_wrenches(system, e, raw, wrench, sums.data() + e * size);
+    });
+    const double* before = states_[now_].p.data();
+    for (double* own = sums.data(); own != sums.data() + sums.size(); before = own, own += size) {
+        const double* __restrict p = before;
+        double* __restrict sum = own;
+        for (std::size_t i = 0; i < size; ++i) sum[i] += p[i];
+    }
+    return sums;
+}
+
+void ElementEnd::begin_as(const ElementEnd& other, const NodalSystem& system, int e)
+{
+    here().take(other.here());
+    impulse_ = other.impulse_;
+    instant_.choose_as(other.instant_);
+    std::vector<double>& angles = here().angles;
+    for (int A = 1; A <= e * system.rule().degree && !tables_.loads.turns.empty(); ++A)
+        tables_.loads.turns.follow(Configurations(system.nodes().X(A)), angles);
 }
 
 /// The spin about the centres of mass at the end of an element of radau is that of the polynomial's own
@@ -156,19 +185,19 @@ void ElementEnd::take_spin_of_polynomial(const NodalSystem& system, int e)
         for (int i = 3; i < body.dofs; ++i) momentum_[body.first + i] = wrench_[body.first + i];
 }
 
-bool ElementEnd::reach(NodalSystem& system, MarchKernel& kernel, int e, bool polish)
+bool ElementEnd::reach(NodalSystem& system, MarchKernel& kernel, int e, const double* momentum, bool polish)
 {
     const ElementRule& rule = system.rule();
     const WindowLayout& layout = system.layout();
     const Nodes& nodes = system.nodes();
     const int p = rule.degree, A = (e + 1) * p;
-    const bool is_last = e + 1 == layout.n_elements(), is_radau = rule.points == Points::radau;
+    const bool is_radau = rule.points == Points::radau;
     InstantState &here = states_[now_], &next = states_[1 - now_];
     next.t = layout.times[e + 1];
     if (kernel.is_solved())
         kernel.momentum(layout, here, momentum_.data());
     else
-        sum_momentum(system, e);
+        std::copy_n(momentum, momentum_.size(), momentum_.begin());
     next.angles = here.angles;
     for (int a = 1; a <= p; ++a) tables_.loads.turns.follow(Configurations(nodes.X(e * p + a)), next.angles);
     std::copy_n(nodes.X(A), next.X.size(), next.X.begin());
@@ -181,7 +210,7 @@ bool ElementEnd::reach(NodalSystem& system, MarchKernel& kernel, int e, bool pol
     for (int b = 0; polish && b < tables_.n_bodies(); ++b)
         if (tables_.bodies[b].dofs == 6) orthonormalise(next.X.data() + 12 * b);
     // the node's own basis, where nothing asks for it any more
-    const bool is_free = is_last && !is_radau && layout.is_unknown(A) && !kernel.is_solved();
+    const bool is_free = layout.n_elements() == 1 && !is_radau && layout.is_unknown(A) && !kernel.is_solved();
     ConstraintBasis* known = is_free && system.bases_fit() ? &system.nodes().own_basis(A) : nullptr;
     if (!instant_.prepare(next, here.held.rows, known, kernel.factor_at_end())) return false;
     const double weight = layout.h(e) * rule.weights[p];

@@ -2,6 +2,7 @@
 // The states at the ends of an element: the one that it began with, and the one that it has come to.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ public:
     InstantState& here() { return states_[now_]; }
     const InstantState& here() const { return states_[now_]; }
     InstantState& next() { return states_[1 - now_]; }
+    /// Anybody's, 12 numbers a body.
+    std::span<double> work() { return raw_; }
     /// Loads jump at t.
     bool is_jump(double t) const;
 
@@ -37,8 +40,14 @@ public:
     bool find_first(NodalSystem& system);
     /// Impulses W lambda at the first node of a march, in its basis.
     void begin(const double* impulses);
-    /// next() <- the end state of the solved element e. `polish`: directors, too. False: as above.
-    bool reach(NodalSystem& system, MarchKernel& kernel, int e, bool polish);
+    /// Momenta at the ends of all elements from the balance of their rows, n_twists each, of which joints
+    /// have yet to take what is not tangent to them. The kernel has that of its element by itself.
+    std::vector<double> momenta(const NodalSystem& system) const;
+    /// Begins where another one does; before element e it is reach() alone that may be asked for.
+    void begin_as(const ElementEnd& other, const NodalSystem& system, int e);
+    /// next() <- the end state of the solved element e. `momentum`: there, see momenta(), null of an element
+    /// that the kernel has solved. `polish`: directors, too. False: as above.
+    bool reach(NodalSystem& system, MarchKernel& kernel, int e, const double* momentum, bool polish);
     /// A row that was left out as redundant and does not hold at next(); empty: they all do. They may be
     /// redundant no more, or others may have become so on the way: rows are chosen at element ends.
     std::string contradiction() const;
@@ -48,7 +57,8 @@ public:
     void pass_on(const NodalSystem& system, int e);
 
 private:
-    void sum_momentum(const NodalSystem& system, int e);
+    void add_wrenches(const NodalSystem& system, int e, std::span<double> raw, std::span<double> wrench,
+                      double* sum) const;
     void take_spin_of_polynomial(const NodalSystem& system, int e);
 
     const ModelTables& tables_;

@@ -12,6 +12,7 @@
 #include "livens/solvers/crew.h"
 #include "livens/solvers/dense.h"
 #include "livens/solvers/patience.h"
+#include "livens/solvers/room.h"
 #include "livens/solvers/short_rows.h"
 #include "livens/spacetime/nodal/carried.h"
 #include "livens/spacetime/nodal/mass_products.h"
@@ -82,7 +83,9 @@ public:
         if (f_ == 0) return;   // nothing moves but what is driven
         matrix_.resize(structure_);
         solver_->analyse(structure_);
-        z_.assign(n * static_cast<std::size_t>(layout.n_nodes()), 0.0);
+        z_.resize(n * static_cast<std::size_t>(layout.n_nodes()));
+        for_each_item(layout.n_nodes(), least_shared,
+                      [&](int A) { std::fill_n(z_.data() + place(A), n, 0.0); });
     }
 
     void begin(const WindowLayout& layout, const Nodes& nodes) override
@@ -164,7 +167,7 @@ private:
     BlockMatrix matrix_;
     int degree_;
     std::vector<Pairs> pairs_;   // of each thread
-    std::vector<double> z_;      // null space of every node, n x f
+    Room z_;                     // null space of every node, n x f
     std::vector<double> x_;      // reduced unknowns
     std::vector<double> maps_;   // of the nodes where the tangent was formed; empty: bases may turn
 };

@@ -56,6 +56,13 @@ inline void subtract_two_sums(const double* __restrict x, const double* __restri
         for (std::size_t i = b; i < b + 12; ++i) d[i] = (x[i] - x0[i]) + (x_low[i] - x0_low[i]);
 }
 
+/// Zeros for so many nodes (or elements).
+void take_room(Room& room, int n, std::size_t numbers)
+{
+    room.resize(static_cast<std::size_t>(n) * numbers);
+    for_each_item(n, least_shared, [&](int i) { std::fill_n(room.begin() + i * numbers, numbers, 0.0); });
+}
+
 }   // namespace
 
 NodePositions::NodePositions(const ModelTables& tables, const ElementRule& rule)
@@ -70,11 +77,9 @@ void NodePositions::open(const WindowLayout& layout)
     times_.resize(n);
     for (int A = 0; A < layout.n_nodes(); ++A) times_[A] = layout.time(rule_, A);
     if (is_alike) return;
-    for (Set& set : sets_) {
-        set.X.assign(n * size_, 0.0);
-        set.low.assign(n * size_, 0.0);
-    }
-    dX_.assign(layout.n_elements() * rule_.size() * size_, 0.0);
+    for (Set& set : sets_)
+        for (Room* room : {&set.X, &set.low}) take_room(*room, static_cast<int>(n), size_);
+    take_room(dX_, layout.n_elements(), rule_.size() * size_);
 }
 
 void NodePositions::fix(int A, const std::vector<double>& X, const std::vector<double>& low)
@@ -211,7 +216,7 @@ void Nodes::open(const WindowLayout& layout)
         known_.front() = known_.back() = nullptr;
         return;
     }
-    maps_.assign(n * size_, 0.0);
+    take_room(maps_, layout.n_nodes(), size_);
     scaled_.assign(n * tables_.rank, 0.0);
     phi_.assign(n * tables_.rank, 0.0);
     known_.assign(n, nullptr);
@@ -268,7 +273,6 @@ void Nodes::add_violations(int e, int B, const Change& change, double& sum)
     constexpr double close = 1e-4;       // relative, for one linear step onto the constraints
     const int A = e * rule_.degree + B, k = tables_.rank, before = B > 0 ? -k : 0, first = -B * k;
     const int* row = bases_[A].rows.data();
-    const double* row_scale = bases_[A].row_scale.data();
     double *violations = phi_.data() + A * k, *scaled = scaled_.data() + A * k;
     for (int c = 0; c < k; ++c) {
         const auto& table = tables_.rows[row[c]];
@@ -279,7 +283,7 @@ void Nodes::add_violations(int e, int B, const Change& change, double& sum)
         if (std::abs(phi) < rounding * scale) phi = 0;
         if (!(std::abs(phi) <= close * scale)) near_ = false;
         violations[c] = phi;
-        scaled[c] = phi * row_scale[c];
+        scaled[c] = phi * bases_[A].row_scale(c);
         sum += std::abs(phi);
     }
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "livens/dynamics/rows/constraint_basis.h"
+#include "livens/solvers/room.h"
 #include "livens/spacetime/elements/window_layout.h"
 
 namespace livens::inline dynamics_internal {
@@ -62,14 +63,15 @@ protected:
 
 private:
     struct Set {
-        std::vector<double> X, low;
+        Room X, low;
     };
 
     void displace(const Set& from, int A_from, const double* twist, double factor, Set& to, int A);
 
     Set sets_[2];
     int current_ = 0, kept_ = 0;
-    std::vector<double> times_, dX_;
+    std::vector<double> times_;
+    Room dX_;
 };
 
 /// The constraints at these nodes: maps, bases of constraint and free directions, violations. Known states at
@@ -115,7 +117,7 @@ private:
     void add_violations(int e, int B, const Change& change, double& sum);
     double followed(int e, int B, int c, double* work) const;
 
-    std::vector<double> maps_;
+    Room maps_;
     std::vector<ConstraintBasis> bases_;
     std::vector<const ConstraintBasis*> known_;      // of states at the ends, which do not move; else null
     const std::vector<int>* first_rows_ = nullptr;   // those of the state at the first node

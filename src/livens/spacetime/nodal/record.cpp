@@ -26,7 +26,6 @@ Record::Record(const ModelTables& tables, const TimeMesh& mesh, const ElementRul
     if (rule.points == Points::lobatto) m.gauss_points = degree_;
     for_arrays([e = static_cast<std::size_t>(mesh.n_elements())](
                    auto& values, std::size_t n, std::size_t more) { values.reserve(e * n + more); });
-    work_.assign(12 * static_cast<std::size_t>(m.n_bodies), 0.0);
 }
 
 /// Every array of the motion, with how many numbers (or columns) an element has in it, and an end more.
@@ -98,6 +97,15 @@ void Record::begin_anew()
     last_ = -1;
 }
 
+void Record::make_room(int first, int last)
+{
+    for_arrays([e = static_cast<std::size_t>(last)](auto& values, std::size_t n, std::size_t more) {
+        if (values.size() < e * n + more) values.resize(e * n + more);
+    });
+    first_ = std::min(first_, first);
+    last_ = std::max(last_, last);
+}
+
 void Record::node(int element, int A, const double* X)
 {
     put(motion_.X.values, motion_.X.index(element, A), static_cast<std::size_t>(motion_.X.n_values), X);
@@ -109,26 +117,27 @@ void Record::multipliers(int element, int A, const double* lambda)
         static_cast<std::size_t>(motion_.n_rows), lambda);
 }
 
-void Record::end(int place, const InstantState& state, const InstantSystem& system, bool two_sided)
+void Record::end(int place, const InstantState& state, const InstantSystem& system, bool two_sided,
+                 std::span<double> work)
 {
     Motion& m = motion_;
     const auto bodies = static_cast<std::size_t>(m.n_bodies), rows = static_cast<std::size_t>(m.n_rows);
-    first_ = std::min(first_, place);
-    last_ = std::max(last_, place);
+    if (place < first_) first_ = place;   // not where there is room, and others write as well
+    if (place > last_) last_ = place;
     node(std::min(place, mesh_.n_elements() - 1), place < mesh_.n_elements() ? 0 : degree_, state.X.data());
     put(m.load_angles, place, state.angles.size(), state.angles.data());
     const double *V = system.rates(), *turn = system.centripetal();
-    tables_.bodies.times_mass(V, 1.0, work_.data());
+    tables_.bodies.times_mass(V, 1.0, work.data());
     put(m.velocities, place, bodies, V);
-    put(m.momenta, place, bodies, work_.data());
+    put(m.momenta, place, bodies, work.data());
     for (int side = 0; side < 2; ++side) {
         if (side == 0 || two_sided) {
             // X'' = [a, alpha x d + w x (w x d)]
-            tables_.bodies.rates_of(state.X.data(), state.acceleration[side].data(), work_.data());
-            double* __restrict A = work_.data();
-            for (std::size_t i = 0; i < work_.size(); ++i) A[i] += turn[i];
+            tables_.bodies.rates_of(state.X.data(), state.acceleration[side].data(), work.data());
+            double* __restrict A = work.data();
+            for (std::size_t i = 0; i < work.size(); ++i) A[i] += turn[i];
         }
-        put(m.accelerations, 2 * place + side, bodies, work_.data());
+        put(m.accelerations, 2 * place + side, bodies, work.data());
         put(m.end_multipliers, 2 * place + side, rows, state.multipliers[side].data());
     }
 }
@@ -160,8 +169,7 @@ void Record::only(const State& start)
     first_ = last_ = 0;
     std::copy_n(start.X.front().a, m.X.n_values, m.X.values.begin());
     m.velocities = start.V;
-    tables_.bodies.times_mass(start.V.front().a, 1.0, work_.data());
-    std::copy_n(work_.data(), work_.size(), m.momenta.front().a);
+    tables_.bodies.times_mass(start.V.front().a, 1.0, m.momenta.front().a);
     std::ranges::fill(m.end_multipliers, unknown);
 }
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "livens/dynamics/rows/tables.h"
@@ -25,8 +27,14 @@ public:
     void node(int element, int A, const double* X);
     void multipliers(int element, int A, const double* lambda);
     /// Everything known at an element end; `system` has just made its accelerations. `two_sided`: they
-    /// differ.
-    void end(int place, const InstantState& state, const InstantSystem& system, bool two_sided);
+    /// differ. `work`: 12 numbers a body, of the caller.
+    void end(int place, const InstantState& state, const InstantSystem& system, bool two_sided,
+             std::span<double> work);
+    /// Room for all of these ends and what is between them: then several threads may write, each other ones.
+    void make_room(int first, int last);
+    /// Ends from..to that were written; what is written outside of them is forgotten.
+    std::pair<int, int> written() const { return {first_, last_}; }
+    void forget_but(std::pair<int, int> written) { std::tie(first_, last_) = written; }
     /// Multipliers of these rows of the model are not known at the element end that was written last.
     void forget_reactions(int place, std::span<const int> rows);
     /// Another motion, on what the mesh is now.
@@ -51,7 +59,6 @@ private:
     int degree_;
     int first_, last_;   // element ends from..to that were written
     Motion motion_;
-    std::vector<double> work_;
 };
 
 }   // namespace livens::inline spacetime_internal

@@ -37,7 +37,12 @@ void NodalRows::open(const WindowLayout& layout)
 {
     int n_active = 0;
     for (int A = 0; A < layout.n_nodes(); ++A) n_active += layout.is_active(A) ? 1 : 0;
-    raw_.resize(static_cast<std::size_t>(layout.n_nodes() * size_of_node_));
+    if (const std::size_t n = layout.n_nodes() * size_of_node_; raw_.size() != n) {
+        raw_.resize(n);
+        for_each_item(layout.n_nodes(), least_shared, [&](int A) {
+            std::fill_n(raw_.begin() + A * size_of_node_, size_of_node_, 0.0);
+        });
+    }
     are_finite_.resize(static_cast<std::size_t>(layout.n_nodes()));
     impulses_.resize(layout.n_nodes() * tables_.rank);
     reduced_.resize(n_active * tables_.freedoms());
@@ -132,7 +137,7 @@ bool NodalRows::eliminate(const WindowLayout& layout, const Nodes& nodes, int A,
     at.size = size;
     basis.q.solve_R(y);
     double* impulses = own_impulses(A);
-    for (int c = 0; c < k; ++c) impulses[c] = y[c] * basis.row_scale[c];
+    for (int c = 0; c < k; ++c) impulses[c] = y[c] * basis.row_scale(c);
     return std::isfinite(sum);
 }
 

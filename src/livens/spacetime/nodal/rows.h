@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "livens/dynamics/rows/tables.h"
+#include "livens/solvers/room.h"
 #include "livens/spacetime/nodal/element_loads.h"
 
 namespace livens::inline dynamics_internal {
@@ -81,7 +82,8 @@ private:
     EndMomentum momenta_[2];
     ElementLoads loads_;
     std::ptrdiff_t size_of_node_;   // 12 a body
-    std::vector<double> raw_, impulses_, reduced_;
+    Room raw_;
+    std::vector<double> impulses_, reduced_;
     std::vector<char> are_finite_;   // of nodes
     std::vector<RowWorkspace> workspaces_;
     double size_ = 0, terms_ = 0, start_terms_ = 0;

@@ -298,8 +298,11 @@ double NodalSystem::size_of(std::span<const double> dx) const
         if (!(here <= size) && !std::isnan(size)) size = here;
     };
     const std::size_t n = n_node_numbers();
-    for (std::size_t i = 0; i < n; i += static_cast<std::size_t>(tables_.n_twists))
-        take(nodes_.size_of(dx.data() + i));
+    std::vector<double> sizes(tables_.n_twists > 0 ? n / tables_.n_twists : 0);
+    for_each_item(static_cast<int>(sizes.size()), least_shared, [&](int i) {
+        sizes[i] = nodes_.size_of(dx.data() + static_cast<std::ptrdiff_t>(i) * tables_.n_twists);
+    });
+    for (const double here : sizes) take(here);
     if (conditions_ != nullptr) take(conditions_->size_of(dx.subspan(n)));
     return size;
 }

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A window of lobatto(p) or radau(p): its known states and nodes, initial guesses of its elements, and, once
-// these are solved, their end states, the checks that they have to pass, and the motion (docs/theory.md,
-// "Windows", "Element ends").
+// A window of lobatto(p) or radau(p): its known states and nodes, initial guesses of its elements, and what
+// is told of them (docs/theory.md, "Windows").
 #include "livens/spacetime/nodal/window.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "livens/base/text.h"
@@ -23,7 +21,7 @@ NodalWindow::NodalWindow(const ModelTables& tables, const TimeMesh& mesh, const 
     : BorderedWindow(static_cast<ElementMonitor&>(*this)), tables_(tables), ends_(ends),
       conditions_(ends.has_components() ? std::make_unique<EndConditions>(tables, ends) : nullptr),
       system_(tables, rule), series_(tables, system_.rule()), kernel_(tables, system_.rule()),
-      end_(tables, kernel_.serves() && ends.has_state()), checks_(tables, system_.rule()),
+      end_(tables, is_sparse()), checks_(tables, system_.rule()),
       record_(tables, mesh, system_.rule())
 {
     record_.note_redundant(ends.redundant);
@@ -126,7 +124,7 @@ bool NodalWindow::begin_front(SolveReport& report)
     if (!ends_.has_state()) return true;
     is_ready_ = true;
     end_.accelerate(end_.here());
-    record_end(0);
+    record_end(end_, 0);
     return true;
 }
 
@@ -241,74 +239,13 @@ bool NodalWindow::find_first(SolveReport& report)
     if (!end_.find_first(system_))
         return fail(report,
                     "the free motions carry no inertia at t = " + to_text(layout_.times[0], 6) + " s");
-    record_end(0);
+    record_end(end_, 0);
     return true;
 }
 
-void NodalWindow::record_end(int end)
+void NodalWindow::record_end(ElementEnd& state, int end)
 {
-    record_.end(mesh_end(end), end_.here(), end_.instant(), end_.is_jump(end_.here().t));
-}
-
-/// Finds the end state of a solved element and applies the checks to it.
-bool NodalWindow::is_believed(int e, const AcceptanceCriteria& criteria, SolveReport& report,
-                              AcceptedElements& closed)
-{
-    constexpr double infinite = std::numeric_limits<double>::infinity();
-    const Nodes& nodes = system_.nodes();
-    closed.loss = criteria.full_rank ? checks_.rank_loss(nodes, e) : RankLoss::none;
-    closed.is_refused = closed.loss != RankLoss::none;
-    if (closed.is_refused) return false;
-    // directors drift by rounding alone: now and then is enough to mend them
-    if (!end_.reach(system_, kernel_, e, mesh_end(e) % 16 == 15))
-        return fail(report,
-                    "the free motions carry no inertia at t = " + to_text(layout_.times[e + 1], 6) + " s");
-    closed.contradiction = end_.contradiction();
-    if (!closed.contradiction.empty()) {
-        closed.velocity_jump = infinite;
-        closed.is_refused = layout_.is_march() || fail(report, closed.contradiction);
-        return false;
-    }
-    const bool is_watched = criteria.turns || !std::isinf(criteria.velocity_jump);
-    if (is_watched) closed.velocity_jump = checks_.velocity_jump(system_, e, end_, criteria.turns);
-    // an element near one of a motion that was watched is on its branch
-    if (is_watched && !kernel_.has_followed() && checks_.leaves(system_, e, end_))
-        closed.velocity_jump = infinite;
-    Unseen unseen = checks_.look_at_laws(system_, e, end_, closed);
-    closed.is_refused = !(closed.velocity_jump <= criteria.velocity_jump);
-    if (!closed.is_refused) checks_.take(nodes, e, std::move(unseen));
-    return !closed.is_refused;
-}
-
-AcceptedElements NodalWindow::close(const AcceptanceCriteria& criteria, SolveReport& report)
-{
-    if (layout_.is_march())
-        end_.begin(system_.balances().impulses(0));
-    else if (!find_first(report))
-        return {};
-    AcceptedElements closed;
-    for (int e = 0; e < layout_.n_elements(); ++e) {
-        if (!is_believed(e, criteria, report, closed)) return closed;
-        close_element(e);
-        ++closed.n_elements;
-    }
-    is_ready_ = true;
-    return closed;
-}
-
-/// The nodes and multipliers of a believed element into the motion, its end as the start of the next.
-void NodalWindow::close_element(int e)
-{
-    const int p = layout_.degree, element = std::min(mesh_end(e), mesh_end(e + 1));
-    for (int a = 0; a <= p; ++a) {
-        const int place = ends_.is_backwards() ? p - a : a;
-        if (a > 0 && a < p) record_.node(element, place, system_.nodes().X(e * p + a));
-        record_.multipliers(element, place, end_.multipliers(system_, e, a));
-    }
-    end_.pass_on(system_, e);
-    record_end(e + 1);
-    if (!checks_.has_reactions(system_.nodes(), e))
-        record_.forget_reactions(mesh_end(e + 1), end_.instant().weak_rows(end_.here()));
+    record_.end(mesh_end(end), state.here(), state.instant(), state.is_jump(state.here().t), state.work());
 }
 
 Uncertainty NodalWindow::uncertainty()

@@ -13,6 +13,8 @@
 
 namespace livens::inline spacetime_internal {
 
+struct ElementCloser;
+
 /// Windows from the end where the state is known, or one window of all elements; radau: single elements from
 /// the state at the start.
 class NodalWindow final : public BorderedWindow, private ElementMonitor {
@@ -60,6 +62,8 @@ private:
     std::vector<Unseen> take_unseen() override { return checks_.take_unseen(); }
     const Motion* so_far() override { return &record_.so_far(); }
 
+    /// Whether ends of elements are found by elimination along the joints, see InstantSystem.
+    bool is_sparse() const { return kernel_.serves() && ends_.has_state(); }
     int mesh_end(int end) const;
     void set_momenta(const State& given, std::vector<double>& momenta) const;
     bool begin_conditions(const Guess& guess);
@@ -68,10 +72,13 @@ private:
     void begin_newton();
     bool start_by_series();
     bool find_first(SolveReport& report);
-    bool is_believed(int e, const AcceptanceCriteria& criteria, SolveReport& report,
-                     AcceptedElements& closed);
-    void close_element(int e);
-    void record_end(int end);
+    bool is_believed(ElementCloser& by, int e, const AcceptanceCriteria& criteria, const double* momentum);
+    void close_element(ElementCloser& by, int e);
+    bool close_share(ElementCloser& by, std::pair<int, int> elements, const AcceptanceCriteria& criteria,
+                     const std::vector<double>& momenta, std::vector<Unseen>& unseen);
+    bool close_in_shares(const AcceptanceCriteria& criteria, const std::vector<double>& momenta,
+                         AcceptedElements& closed);
+    void record_end(ElementEnd& state, int end);
     bool fail(SolveReport& report, const std::string& message) const;
 
     const ModelTables& tables_;
