@@ -76,6 +76,7 @@ Body rigid_body(const std::string& name, const MassProperties& properties, const
     body.mass = mass_matrix(properties);
     body.X = configuration(placement.position, project_directors(placement.directors));
     body.V = rate(body.X, placement.velocity, placement.angular_velocity);
+    body.upright = directors(body.X);
     return body;
 }
 

@@ -31,6 +31,7 @@ struct Body {
     Matrix4 mass{};                    ///< m (P7)
     Matrix34 X{};                      ///< configuration at the start
     Matrix34 V{};                      ///< dX/dt at the start
+    Matrix3 upright = identity<3>();   ///< directors from which rotations of the body are counted
     /// The directors as the user counts them are [d1 d2 d3] stretch: symmetric, the identity unless they are
     /// skew (P4). X, m and all places on the body are in the orthonormal triad.
     Matrix3 stretch = identity<3>();

@@ -194,6 +194,7 @@ Body relocated(Body body, const Relocation& to)
     }
     body.X = to.by.of_configuration(body.X);
     body.V = to.by.rotation * body.V;
+    body.upright = to.by.rotation * body.upright;
     return body;
 }
 

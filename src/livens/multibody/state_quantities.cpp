@@ -31,14 +31,15 @@ void take(const Sensor& sensor, std::vector<StateQuantity>& all)
             all.push_back({sensor.name + "." + c.name, c.unit, c.coordinate, c.derivative});
 }
 
-/// The rotation vector from where the model has the body, and the angular velocity, in world axes.
-void take_turns(const Body& body, int b, std::vector<StateQuantity>& all)
+/// The rotation vector from where the body is upright, and the angular velocity, in world axes.
+void take_turns(const Body& body, int b, std::span<const Matrix34> stated, std::vector<StateQuantity>& all)
 {
-    const TriadPair aligned{identity<3>(), transpose(directors(body.X))};
-    for (int k = 0; k < 3; ++k)
-        all.push_back({body.name + ".rotation_" + axes[k],
-                       "rad",
-                       {std::string("rotation_") + axes[k], rotation_component(world, b, aligned, k)}});
+    const TriadPair aligned{identity<3>(), transpose(body.upright)};
+    for (int k = 0; k < 3; ++k) {
+        NamedCoordinate one{std::string("rotation_") + axes[k], rotation_component(world, b, aligned, k)};
+        one.at_stated = coordinate_value(one.coordinate, stated);
+        all.push_back({body.name + ".rotation_" + axes[k], "rad", std::move(one)});
+    }
     for (int k = 0; k < 3; ++k)
         all.push_back({body.name + ".angular_velocity_" + axes[k], "rad s-1", {}, 0, b, k});
 }
@@ -113,7 +114,7 @@ std::vector<StateQuantity> quantities_of(const Model& model, const std::string& 
         if (sensor.name == object) take(sensor, all);
     if (const int b = model.find_body(object); b >= 0) {
         take(point_sensor(object, b, {}, stated_bodies(model)), all);
-        if (!model.bodies()[b].is_point) take_turns(model.bodies()[b], b, all);
+        if (!model.bodies()[b].is_point) take_turns(model.bodies()[b], b, stated_bodies(model), all);
         take_energies(model, object, b, all);
     }
     return all;

@@ -49,7 +49,7 @@ struct StateQuantity {
 
 /// "object.component": the object is a joint, a sensor or a body. Joints have their coordinates and rates,
 /// sensors what they read of coordinates, bodies x, y, z of their reference point and vx, vy, vz;
-/// rotation_x, rotation_y, rotation_z, the rotation vector from where the model has the body;
+/// rotation_x, rotation_y, rotation_z, the rotation vector from where the body is upright;
 /// angular_velocity_x and so on, all in world axes; its speed, its kinetic energy and its energy with that of
 /// its weight. "energy" alone is that of all bodies with what loads store. "position", "velocity", "rotation"
 /// and "angular_velocity" of a body are three at once. Throws InputError: `conditions-unknown`, and

@@ -96,6 +96,39 @@ TEST(KnownComponents, AreMetByTheMotion)
     EXPECT_NEAR(end.V[1](0, 0), 1, 1e-12);
 }
 
+// [body.start] is a guess, and changes nothing of what is asked for; nor does a displaced part.
+TEST(KnownComponents, OfRotationsCountFromWhereBodiesArePlaced)
+{
+    const std::string free = R"(format = 1
+gravity = [0, 0, -9.81]
+time = { end = 1, elements = 12 }
+[[body]]
+name = "ball"
+mass = 1
+inertia = [1, 2, 3]
+rotation_vector = [0, 0, 0.4]
+)",
+                      known = R"(
+[start.known]
+"ball.position" = [0, 0, 0]
+"ball.rotation" = [0, 0, 0.3]
+[end.known]
+"ball.position" = [1, 0, 0]
+"ball.rotation" = [0, 0, 1.1]
+)";
+    for (const char* start : {"", "[body.start]\nrotation_vector = [0, 0, 0.9]\n",
+                              "[body.start]\nrotation_vector = [0.2, 0.1, 0.9]\n"}) {
+        const ScenarioResult result = read(free + start + known);
+        ASSERT_TRUE(result.scenario.has_value()) << shown(result);
+        const Scenario& scenario = *result.scenario;
+        const Solution s = solve(scenario.model, {scenario.conditions}, scenario.time, scenario.method);
+        ASSERT_TRUE(s.report.converged()) << s.report.message;
+        const State first = s.motion.at_end(0), last = s.motion.at_end(12);
+        EXPECT_NEAR(std::atan2(first.X[0](1, 1), first.X[0](0, 1)), 0.4 + 0.3, 1e-12) << start;
+        EXPECT_NEAR(std::atan2(last.X[0](1, 1), last.X[0](0, 1)), 0.4 + 1.1, 1e-12) << start;
+    }
+}
+
 TEST(KnownComponents, HaveOneMessageForAMistakeAtItsPlace)
 {
     const std::string text = with(all);
