@@ -50,6 +50,20 @@ inline Model two_bricks(const Setting& setting = {})
     return model;
 }
 
+/// A chain of bricks on ball joints, stretched out, at rest.
+inline Model hanging_bricks(int n)
+{
+    Model model({0, 0, -9.81});
+    for (int b = 0; b < n; ++b) {
+        const std::string number = std::to_string(b);
+        model.add_body(rigid_body("brick " + number, brick({}), placed({}, {1.0 * b, 0, 0})));
+        JointFrame ball;
+        if (b > 0) ball.point_first = {1, 0, 0};
+        model.add_joint(spherical("ball " + number, b > 0 ? b - 1 : world, b, ball));
+    }
+    return model;
+}
+
 /// End of brick `body`, where the next one hangs.
 inline Vector3 tip(const State& state, int body, double metre = 1)
 {

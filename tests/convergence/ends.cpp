@@ -79,7 +79,8 @@ std::vector<Forward> runs_between_ends()
             forward("offset pendulum", cubes_on_rods(0.1), 0.3, 1, 40),
             forward("four-bar", four_bar(), 0.2, 1, 40),
             forward("hinged links", hinged_links(), 0.2, 0.5, 20),
-            forward("hinged brick", hinged_brick(), 0.2, 0.4, 10)};
+            forward("hinged brick", hinged_brick(), 0.2, 0.4, 10),
+            forward("eight bricks", hanging_bricks(8), 0.2, 0.2, 10)};
 }
 
 State faster(State state, double factor)

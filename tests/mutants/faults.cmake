@@ -962,6 +962,39 @@ livens_mutant(NAME hidden_loss_is_none
               TESTS_OF unit_spacetime
               MUST_FAIL Verdict.OfVibrationsWhoseEnergyIsRoundingIsNoLessThanTheyAre)
 
+# Rows of a child that its parent moves do not go to the parent.
+livens_mutant(NAME rows_stay_with_the_child
+              FILE spacetime/nodal/condensed/element_factor.cpp
+              OLD [[    functions_->add_from_left(gone.T.data(), of_T, own.of_ends.data(), sizes_.n_rows, above.of_ends.data(),
+                              sizes_.n_rows);]]
+              NEW [[    ]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL LargeElements/InsideOfElements.IsEliminatedAlongJointsOfTrees/*)
+
+# What rows of a parent have by its child is forgotten.
+livens_mutant(NAME parents_do_not_feel_children
+              FILE spacetime/nodal/condensed/element_factor.cpp
+              OLD [[if (!own.of_parent.empty()) {]]
+              NEW [[if (own.of_parent.size() == 1) {]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL LargeElements/InsideOfElements.IsEliminatedAlongJointsOfTrees/*)
+
+# Elements that move by themselves are eliminated along joints all the same.
+livens_mutant(NAME growth_is_not_watched
+              FILE spacetime/nodal/condensed/element_factor.cpp
+              OLD [[constexpr double most_growth = 1e6;]]
+              NEW [[constexpr double most_growth = 1e16;]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL AlongJoints.TurnToDenseBlocksWhereAnElementMovesByItself)
+
+# A guess of the start moves the zero of rotations.
+livens_mutant(NAME rotations_count_from_the_guess
+              FILE multibody/state_quantities.cpp
+              OLD [[transpose(body.upright)]]
+              NEW [[transpose(directors(body.X))]]
+              TESTS_OF unit_io
+              MUST_FAIL KnownComponents.OfRotationsCountFromWhereBodiesArePlaced)
+
 # The classical rules and mixed judge themselves.
 livens_mutant(NAME no_witness
               FILE spacetime/accuracy/estimate.cpp

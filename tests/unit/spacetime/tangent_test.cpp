@@ -10,6 +10,7 @@
 
 #include "livens/dynamics/instant/instant.h"
 #include "livens/dynamics/start/consistent_start.h"
+#include "livens/spacetime/nodal/condensed/along_joints.h"
 #include "livens/spacetime/nodal/elimination.h"
 #include "livens/spacetime/nodal/nodes.h"
 #include "livens/spacetime/nodal/system.h"
@@ -204,15 +205,17 @@ TEST_P(TangentOf, MatchesDifferencesWithoutLoads) { expect_differences(two_brick
 
 /// Twists that are solved for meet the rows in the tangent that differences have, of which masses of all
 /// pairs are formed together in the solver's blocks.
-void expect_solutions(const Model& model, const Case& c)
+void expect_solutions(const Model& model, const Case& c, Inside inside = Inside::as_a_whole)
 {
     Window window(model, c, 0.3);
     const int n = window.tables.n_twists, f = window.tables.freedoms(), k = window.tables.rank;
     Dense dense(window.tables, window.stretch);
     window.system.form_tangent(dense);
     const Nodes& nodes = window.system.nodes();
-    const auto blocks = null_space_elimination(window.tables, window.stretch,
-                                               window.stretch.is_march() ? forward_solver() : chain_solver());
+    const auto blocks =
+        null_space_elimination(window.tables, window.stretch,
+                               window.stretch.is_march() ? forward_solver() : chain_solver(), inside);
+    EXPECT_EQ(blocks->is_whole(), inside == Inside::as_a_whole);
     blocks->begin(window.stretch, nodes);
     window.system.form_tangent(*blocks);
     ASSERT_TRUE(blocks->factorise());
@@ -241,6 +244,142 @@ TEST_P(TangentOf, IsThatOfTheBlocksThatAreSolved)
 {
     expect_solutions(everything(), GetParam());
     expect_solutions(two_bricks(), GetParam());
+}
+
+/// Of the same window by both ways: how far rows move unknowns, which takes transposed solutions.
+void expect_resistance(const Model& model, const Case& c)
+{
+    Window window(model, c, 0.3);
+    std::vector<double> sizes, rows, twists[2];
+    Dice dice(7);
+    for (int A = 0; A < window.stretch.n_nodes(); ++A) sizes.push_back(1 + 0.5 * dice());
+    double resisted[2] = {};
+    for (const Inside inside : {Inside::as_a_whole, Inside::along_joints}) {
+        const auto blocks = null_space_elimination(
+            window.tables, window.stretch, window.stretch.is_march() ? forward_solver() : chain_solver(),
+            inside);
+        blocks->begin(window.stretch, window.system.nodes());
+        window.system.form_tangent(*blocks);
+        ASSERT_TRUE(blocks->factorise());
+        const auto i = static_cast<std::size_t>(inside == Inside::along_joints);
+        resisted[i] = blocks->least_resisted(sizes, twists[i]);
+    }
+    EXPECT_GT(resisted[0], 0);
+    EXPECT_NEAR(resisted[1] / resisted[0], 1, 1e-8);
+    double off = 0, size = 0;
+    ASSERT_EQ(twists[0].size(), twists[1].size());
+    for (std::size_t i = 0; i < twists[0].size(); ++i) {
+        off = std::max(off, std::abs(twists[0][i] - twists[1][i]));
+        size = std::max(size, std::abs(twists[0][i]));
+    }
+    EXPECT_LT(off, 1e-8 * size);
+}
+
+/// Branches of up to five bodies on the world and one that floats, on joints of every number of freedoms,
+/// with loads of bodies on their parents and on the world.
+Model branched(unsigned seed)
+{
+    Dice dice(seed);
+    Model model({0.3, 0, -9.81});
+    const int n = 6;
+    for (int b = 0; b < n; ++b) {
+        Placement placement;
+        placement.position = {0.7 * dice(), 0.7 * dice(), 0.7 * dice()};
+        placement.directors = directors_from_rotation_vector({dice(), dice(), dice()});
+        if (b == n - 1)
+            model.add_body(point_mass("point", 0.4, placement.position));
+        else
+            model.add_body(rigid_body("body " + std::to_string(b),
+                                      with_center(box(1000, {0.2, 0.3, 0.1 + 0.1 * b}),
+                                                  {0.1 * dice(), 0.1 * dice(), 0.1 * dice()}),
+                                      placement));
+    }
+    const int parents[] = {world, 0, 1, 0, world, 3};
+    for (int b = 0; b < n; ++b) {
+        if (b == 4) continue;   // it floats
+        const int on = parents[b];
+        const Matrix34 first = on == world ? configuration({}, identity<3>()) : model.bodies()[on].X,
+                       second = model.bodies()[b].X;
+        const Vector3 at{dice(), dice(), dice()};
+        const JointFrame frame = joint_frame(first, second, at, {dice(), 0.3, dice()});
+        const std::string name = "joint " + std::to_string(b);
+        JointFrame ends;
+        ends.point_first = frame.point_first;
+        const unsigned kind = b == n - 1 ? 4 : (seed + static_cast<unsigned>(b)) % 4;
+        model.add_joint(kind == 0   ? spherical(name, on, b, frame)
+                        : kind == 1 ? revolute(name, on, b, frame)
+                        : kind == 2 ? prismatic(name, on, b, frame, first, second)
+                        : kind == 3 ? weld(name, on, b, frame, first, second)
+                                    : rod(name, on, b, ends, norm(second.column(0) - at)));
+        model.add_load(spring_damper("spring " + std::to_string(b), on, {0.1, 0.2, 0}, b, {0, 0, 0},
+                                     {40, 3, 0.1}));
+    }
+    model.add_load(spring_damper("tether", world, {0, 1, 1}, 4, {0.1, 0, 0}, {30, 2, 0.1}));
+    model.add_load(torque("twist", 1, {1.0, 2.0, 3.0}, Frame::body_fixed));
+    return model;
+}
+
+class InsideOfElements : public ::testing::TestWithParam<Case> {};
+
+TEST_P(InsideOfElements, IsEliminatedAlongJointsOfTrees)
+{
+    const Case c = GetParam();
+    std::vector<Model> models{two_bricks()};
+    for (unsigned seed = 0; seed < 4; ++seed) models.push_back(branched(seed));
+    for (const Model& model : models) {
+        expect_solutions(model, c, Inside::along_joints);
+        if (!c.X_first || !c.P_first) expect_resistance(model, c);   // nobody asks a march
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(LargeElements, InsideOfElements,
+                         ::testing::Values(Case{2, 3, 1, 1, 0, 0}, Case{3, 2, 1, 0, 1, 0},
+                                           Case{2, 2, 1, 0, 0, 1}, Case{3, 2, 0, 1, 1, 0},
+                                           Case{2, 2, 0, 1, 0, 1}, Case{8, 1, 1, 0, 1, 0},
+                                           Case{8, 3, 0, 1, 0, 1}, Case{6, 2, 1, 1, 0, 0},
+                                           Case{12, 2, 1, 0, 0, 1}));
+
+/// Masses on springs without a free length: free bodies, of which nothing is coupled.
+Model swinging(double stiffness, int n)
+{
+    Model model({0, 0, 0});
+    for (int b = 0; b < n; ++b) {
+        const std::string name = std::to_string(b);
+        model.add_body(point_mass("mass " + name, 1, {1.0 + b, 0.2, 0}));
+        model.add_load(spring_damper("spring " + name, world, {}, b, {}, {stiffness, 0, 0}));
+    }
+    return model;
+}
+
+// Half a swing fits into an element: it may move inside of it while its ends rest. In the middle of one of
+// degree 2 its mass makes 16 / (3 h) and its spring, where that node is seen by 2/3 at two Gauss points,
+// -4/9 k h.
+TEST(AlongJoints, TurnToDenseBlocksWhereAnElementMovesByItself)
+{
+    const double h = 0.13;   // of the first element of a window
+    const Case c{2, 3, true, false, true, false};
+    for (const double off : {0.0, 1e-9, 0.1}) {
+        const Model model = swinging(12 / (h * h) * (1 + off), 6);
+        Window window(model, c);
+        ASSERT_TRUE(window.system.settle() && window.system.residual());
+        ASSERT_TRUE(window.system.factorise());
+        EXPECT_EQ(window.system.elimination()->is_whole(), off < 0.01) << off;
+        std::vector<double> step(static_cast<std::size_t>(window.system.n_unknowns()));
+        window.system.solve(step);   // the rows are linear
+        ASSERT_TRUE(window.system.move(step, 1) && window.system.residual());
+        EXPECT_LT(window.system.rows().size, 1e-9) << off;
+    }
+}
+
+TEST(AlongJoints, PayForManyFreedomsAlone)
+{
+    const auto pays = [](const Model& model) {
+        const Window window(model, {8, 2, true, false, true, false});
+        return AlongJoints::pays(window.tables, window.stretch);
+    };
+    EXPECT_FALSE(pays(two_bricks()));
+    EXPECT_FALSE(pays(everything()));   // a spring couples bodies that no joint does
+    EXPECT_TRUE(pays(swinging(10, 6)));
 }
 
 // Where X is unknown at an end and P known, the row has the moment of P about a reference point that moves

@@ -125,8 +125,7 @@ void spacetime_internal::add_lost_vibrations(const Model& model, const Motion& m
     if (shift == 0 && turn == 0) return;
     double jumps = 0;
     for (const double jump : velocity_jumps(model, motion)) jumps += jump;
-    const double root =
-        LostEnergy(model, motion).root_for(std::max(shift / found.length, turn), jumps);
+    const double root = LostEnergy(model, motion).root_for(std::max(shift / found.length, turn), jumps);
     for (double& error : found.position) error += root * shift / found.length;
     for (double& error : found.velocity) error += root * speed;
     for (std::size_t i = 0; i < found.orientation.size(); ++i)

@@ -15,74 +15,30 @@
 #include "livens/solvers/room.h"
 #include "livens/solvers/short_rows.h"
 #include "livens/spacetime/nodal/carried.h"
-#include "livens/spacetime/nodal/mass_products.h"
+#include "livens/spacetime/nodal/condensed/along_joints.h"
 #include "livens/spacetime/nodal/nodes.h"
+#include "livens/spacetime/nodal/pair_blocks.h"
+#include "livens/spacetime/nodal/window_blocks.h"
 
 namespace livens::inline spacetime_internal {
 
 namespace {
 
-/// Rows of radau(p) are numbered with the node before their own, as a march has them.
-int place_of_row(const WindowLayout& layout, int A) { return layout.points == Points::radau ? A - 1 : A; }
-
-BlockStructure structure_of(const WindowLayout& layout, int freedoms)
-{
-    BlockStructure structure;
-    structure.n_rows.assign(static_cast<std::size_t>(layout.n_nodes()), 0);
-    for (int A = 0; A < layout.n_nodes(); ++A) {
-        structure.n_unknowns.push_back(layout.is_unknown(A) ? freedoms : 0);
-        if (layout.is_active(A)) structure.n_rows[place_of_row(layout, A)] = freedoms;
-    }
-    for (int e = 0; e < layout.n_elements(); ++e)
-        structure.elements.push_back({e * layout.degree, (e + 1) * layout.degree});
-    if (layout.are_momenta_unknown)
-        structure.n_border = structure.n_closing = 2 * freedoms + layout.n_numbers;
-    if (layout.part) {
-        structure.is_part = true;
-        structure.n_closing = layout.part->n_closing;
-        structure.n_border += layout.part->n_joins;
-    }
-    return structure;
-}
-
-class NullSpaces;
-
-/// Blocks of the pairs that one thread puts in.
-class Pairs final : public TangentSink {
-public:
-    Pairs(NullSpaces& all, int degree);
-
-    void open(int e, int A, int B) override
-    {
-        e_ = e;
-        A_ = A;
-        B_ = B;
-        std::ranges::fill(product_, 0.0);
-    }
-    void mass(int, double, const double*) override {}   // all are taken together
-    bool take_masses(int e, const std::vector<double>& k, double h) override;
-    void block(int body_i, int body_j, const double* values) override;
-    void close() override;
-
-private:
-    NullSpaces& all_;
-    MassProducts masses_;
-    int e_ = 0, A_ = 0, B_ = 1;     // the open pair
-    std::vector<double> product_;   // block of the tangent times the null space at B, n x f
-    std::vector<double> row_;       // of Z_A^T times it
-};
-
 class NullSpaces final : public Elimination {
 public:
-    NullSpaces(const ModelTables& tables, const WindowLayout& layout, std::unique_ptr<LinearSolver> solver)
+    /// One of `solver` and `inside`.
+    NullSpaces(const ModelTables& tables, const WindowLayout& layout, std::unique_ptr<LinearSolver> solver,
+               std::unique_ptr<AlongJoints> inside)
         : tables_(tables), f_(tables.freedoms()), structure_(structure_of(layout, tables.freedoms())),
-          solver_(std::move(solver)), degree_(layout.degree)
+          solver_(std::move(solver)), inside_(std::move(inside)), degree_(layout.degree)
     {
         const auto n = static_cast<std::size_t>(tables.n_twists * f_);
-        pairs_.emplace_back(*this, degree_);
+        pairs_.emplace_back(tables, degree_, matrix_);
         if (f_ == 0) return;   // nothing moves but what is driven
-        matrix_.resize(structure_);
-        solver_->analyse(structure_);
+        if (inside_ == nullptr) {
+            matrix_.resize(structure_);
+            solver_->analyse(structure_);
+        }
         z_.resize(n * static_cast<std::size_t>(layout.n_nodes()));
         for_each_item(layout.n_nodes(), least_shared,
                       [&](int A) { std::fill_n(z_.data() + place(A), n, 0.0); });
@@ -92,11 +48,14 @@ public:
     {
         layout_ = &layout;
         stand_at(tables_, nodes);
-        while (static_cast<int>(pairs_.size()) < Crew::size()) pairs_.emplace_back(*this, degree_);
+        while (static_cast<int>(pairs_.size()) < Crew::size()) pairs_.emplace_back(tables_, degree_, matrix_);
         for_each_item(layout.n_nodes(), least_shared, [&](int A) {
             if (layout.is_active(A) || layout.is_unknown(A))
                 nodes.basis(A).q.null_space(z_.data() + place(A));
         });
+        const NullSpacesOfNodes z{z_.data(), tables_.n_twists, f_};
+        for (PairBlocks& pairs : pairs_) pairs.begin(layout, nodes, z);
+        if (inside_ != nullptr) inside_->begin(layout, nodes, z);
         maps_.clear();
         if (!layout.is_march()) maps_.assign(nodes.maps(0), nodes.maps(layout.n_nodes()));
     }
@@ -108,7 +67,11 @@ public:
     {
         return pairs_[0].take_masses(e, k, h);
     }
-    TangentSink* of_thread(int slot) override { return &pairs_[static_cast<std::size_t>(slot)]; }
+    TangentSink* of_thread(int slot) override
+    {
+        if (inside_ != nullptr) return &inside_->of_thread(slot);
+        return &pairs_[static_cast<std::size_t>(slot)];
+    }
     void close_with(std::span<const double> closing, const DenseMatrix& by_numbers) override;
     void stand_at(const ModelTables& tables, const Nodes& nodes) override
     {
@@ -116,25 +79,36 @@ public:
         nodes_ = &nodes;
     }
     void carry(double* rows) const override { to_factorised(rows); }
-    bool factorise() override { return f_ == 0 || solver_->factorise(matrix_) == Outcome::regular; }
+    bool factorise() override
+    {
+        if (inside_ != nullptr) return inside_->factorise();
+        return f_ == 0 || solver_->factorise(matrix_) == Outcome::regular;
+    }
+    bool is_whole() const override { return inside_ == nullptr; }
     void solve(std::span<const double> rows, const double* range, double* y) override;
     void last_twist(std::span<const double> conditions, double* y) override
     {
         std::vector<double> ends(static_cast<std::size_t>(2 * f_ + structure_.n_border));
-        solver_->solve_closing(conditions, ends);
+        solver().solve_closing(conditions, ends);
         to_current(ends.data() + f_, structure_.n_nodes() - 1, y);
     }
     void describe(SolveReport& report) const override
     {
-        if (f_ > 0 && structure_.n_elements() > 1) report.factor_entries = solver_->report().factor_entries;
+        if (f_ > 0 && structure_.n_elements() > 1)
+            report.factor_entries =
+                inside_ != nullptr ? inside_->n_entries() : solver_->report().factor_entries;
     }
-    long long flops() const override { return f_ > 0 ? solver_->report().flops : 0; }
+    long long flops() const override { return f_ > 0 && is_whole() ? solver_->report().flops : 0; }
     double least_resisted(std::span<const double> rows, std::vector<double>& y) override;
     void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) override;
 
 private:
-    friend class Pairs;
-
+    const LinearSolver& solver() const { return inside_ != nullptr ? inside_->solver() : *solver_; }
+    void apply_inverse(std::span<double> x, bool is_transposed)
+    {
+        if (inside_ != nullptr) return inside_->solve(x, is_transposed);
+        is_transposed ? solver_->solve_transposed(x) : solver_->solve(x);
+    }
     LinearMap applying(void (LinearSolver::*apply)(std::span<double>) const) const
     {
         return [this, apply](std::span<const double> x, std::span<double> y) {
@@ -145,10 +119,6 @@ private:
     std::size_t place(int A) const
     {
         return static_cast<std::size_t>(A) * static_cast<std::size_t>(tables_.n_twists * f_);
-    }
-    const double* null_space(int A, int body) const
-    {
-        return z_.data() + place(A) + tables_.bodies[body].first * f_;
     }
     const double* maps_at(int A) const
     {
@@ -164,111 +134,44 @@ private:
     int f_;
     BlockStructure structure_;
     std::unique_ptr<LinearSolver> solver_;
+    std::unique_ptr<AlongJoints> inside_;   // in place of the solver and its matrix
     BlockMatrix matrix_;
     int degree_;
-    std::vector<Pairs> pairs_;   // of each thread
+    std::vector<PairBlocks> pairs_;   // of each thread
     Room z_;                     // null space of every node, n x f
     std::vector<double> x_;      // reduced unknowns
     std::vector<double> maps_;   // of the nodes where the tangent was formed; empty: bases may turn
 };
-
-Pairs::Pairs(NullSpaces& all, int degree)
-    : all_(all), masses_(all.tables_, degree + 1),
-      product_(static_cast<std::size_t>(all.tables_.n_twists * all.f_ + register_room), 0.0),
-      row_(static_cast<std::size_t>(all.f_ + register_room), 0.0)
-{}
-
-/// Sets the blocks of all pairs: the product of (A, B) is the transpose of that of (B, A). All nodes but the
-/// ends of a window have rows and unknowns.
-bool Pairs::take_masses(int e, const std::vector<double>& k, double h)
-{
-    const WindowLayout& layout = *all_.layout_;
-    const int f = all_.f_, p = layout.degree, first = e * p;
-    if (f == 0) return true;   // there is no matrix
-    const int stride = all_.matrix_.stride(e);
-    const auto at = [&](int a, int b) {
-        return all_.matrix_.block(e, place_of_row(layout, first + a), first + b);
-    };
-    std::vector<double> by_row(static_cast<std::size_t>(p + 1)), by_column(by_row);
-    for (int part = 0; part < masses_.n_parts(); ++part) {
-        for (int a = 0; a <= p; ++a)
-            masses_.place(part, a, all_.nodes_->X(first + a), all_.nodes_->maps(first + a),
-                          all_.z_.data() + all_.place(first + a));
-        for (int a = 0; a <= p; ++a) {
-            if (f >= 64) Patience::ask();
-            masses_.multiply(a);
-            for (int b = 0; b <= p; ++b) {
-                by_row[b] = k[a * (p + 1) + b] / h;
-                by_column[b] = k[b * (p + 1) + a] / h;
-            }
-            int begin = layout.is_unknown(first + a) ? a : a + 1,
-                end = layout.is_unknown(first + p) ? p : p - 1;
-            if (layout.is_active(first + a) && begin <= end)
-                masses_.put_rows({at(a, begin), stride, begin, end}, a, by_row.data(), part > 0);
-            begin = a + 1;
-            end = layout.is_active(first + p) ? p : p - 1;
-            if (layout.is_unknown(first + a) && begin <= end)
-                masses_.put_columns({at(begin, a), stride, begin, end}, a, by_column.data(), part > 0);
-        }
-    }
-    return true;
-}
-
-void Pairs::block(int body_i, int body_j, const double* values)
-{
-    const BodyTables& bodies = all_.tables_.bodies;
-    const double* z = all_.null_space(B_, body_j);
-    const int f = all_.f_;
-    for (int i = 0; i < bodies[body_i].dofs; ++i) {
-        double* __restrict v = product_.data() + (bodies[body_i].first + i) * f;
-        for (int k = 0; k < bodies[body_j].dofs; ++k) {
-            const double s = values[6 * i + k];
-            if (s != 0) subtract_scaled(v, -s, z + k * f, f);
-        }
-    }
-}
-
-/// The block at (A, B) += Z_A^T product.
-void Pairs::close()
-{
-    const int f = all_.f_;
-    if (f == 0) return;
-    if (f >= 64) Patience::ask();
-    const RowFunctions& rows = row_functions();
-    const double* z = all_.z_.data() + all_.place(A_);
-    double* to = all_.matrix_.block(e_, place_of_row(*all_.layout_, A_), B_);
-    const int stride = all_.matrix_.stride(e_);
-    for (int i = 0; i < f; ++i, to += stride) {
-        rows.product(row_.data(), {z + i, f, product_.data(), f, all_.tables_.n_twists}, f);
-        subtract_scaled(to, -1, row_.data(), f);
-    }
-}
 
 /// P(0) is added at the first node, P(T) taken off at the last.
 void NullSpaces::close_with(std::span<const double> closing, const DenseMatrix& by_numbers)
 {
     if (f_ == 0) return;
     const int last = structure_.n_elements() - 1, m = structure_.n_border, n_closing = structure_.n_closing;
-    const int first_number = m - layout_->n_numbers;
-    for (int e = 0; e <= last; ++e) std::ranges::fill(matrix_.border_storage(e), 0.0);
-    double *first_row = matrix_.border(0, 0), *last_row = matrix_.border(last, structure_.n_nodes() - 1);
+    const int first_number = m - layout_->n_numbers, every = is_whole() ? 1 : layout_->degree;
+    BlockMatrix& matrix = is_whole() ? matrix_ : inside_->between();
+    for (int e = 0; e <= last; ++e) std::ranges::fill(matrix.border_storage(e), 0.0);
+    double *first_row = matrix.border(0, 0),
+           *last_row = matrix.border(last, (structure_.n_nodes() - 1) / every);
     for (int i = 0; i < f_; ++i) {
         first_row[i * m + i] = 1;
         last_row[i * m + f_ + i] = -1;
     }
-    std::vector<double>& rows = matrix_.closing();
+    std::vector<double>& rows = matrix.closing();
     rows.assign(static_cast<std::size_t>(n_closing * (2 * f_ + m)), 0.0);
     const int n_seen = 2 * f_ + first_number;
     for (int i = 0; i < n_closing; ++i)
         std::copy_n(closing.data() + n_seen * i, n_seen, rows.data() + (2 * f_ + m) * i);
     for (int j = 0; j < layout_->n_numbers; ++j) {
         const double* column = by_numbers.column(j).data();
-        for (int A = 0; A < structure_.n_nodes(); ++A) {
-            double* border = matrix_.border(layout_->first_element(A), A) + first_number + j;
-            for (int i = 0; i < f_; ++i) border[i * m] = *column++;
+        for (int A = 0; A < structure_.n_nodes(); ++A, column += f_) {
+            if (A % every != 0) continue;   // inside
+            double* border = matrix.border(layout_->first_element(A), A / every) + first_number + j;
+            for (int i = 0; i < f_; ++i) border[i * m] = column[i];
         }
         for (int i = 0; i < n_closing; ++i) rows[(2 * f_ + m) * i + n_seen + j] = *column++;
     }
+    if (inside_ != nullptr && layout_->n_numbers > 0) inside_->take_numbers(by_numbers);
 }
 
 /// Reduced rows at the nodes as they stand now, to those that the factors belong to. Where a node has moved,
@@ -312,7 +215,7 @@ void NullSpaces::solve(std::span<const double> rows, const double*, double* y)
     x_.assign(rows.begin(), rows.end());
     if (structure_.is_part) x_.resize(std::max(x_.size(), static_cast<std::size_t>(n_unknowns)), 0.0);
     if (!maps_.empty()) to_factorised(x_.data());
-    if (f_ > 0) solver_->solve(x_);
+    if (f_ > 0) apply_inverse(x_, false);
     const int first = layout_->is_unknown(0) ? 0 : 1;
     for_each_item(structure_.n_nodes(), least_shared, [&](int A) {
         if (!layout_->is_unknown(A)) return;
@@ -346,13 +249,13 @@ double NullSpaces::least_resisted(std::span<const double> rows, std::vector<doub
     double square = 0;
     normalise();
     for (int round = 0; round < 2; ++round) {
-        solver_->solve_transposed(x);
+        apply_inverse(x, true);
         double* row = x.data();
         for (int A = 0; A < structure_.n_nodes(); ++A)
             for (int i = 0; layout_->is_active(A) && i < f_; ++i) *row++ *= rows[A] * rows[A];
         for (int i = 0; i < structure_.n_closing; ++i)
             *row++ *= rows[structure_.n_nodes() + i] * rows[structure_.n_nodes() + i];
-        solver_->solve(x);
+        apply_inverse(x, false);
         square = normalise();
     }
     y.assign(static_cast<std::size_t>((n - structure_.n_border) / f_ * tables_.n_twists), 0.0);
@@ -391,9 +294,15 @@ void NullSpaces::measure_condition(SolveReport& report, const std::function<bool
 }   // namespace
 
 std::unique_ptr<Elimination> null_space_elimination(const ModelTables& tables, const WindowLayout& layout,
-                                                    std::unique_ptr<LinearSolver> solver)
+                                                    std::unique_ptr<LinearSolver> solver, Inside inside)
 {
-    return std::make_unique<NullSpaces>(tables, layout, std::move(solver));
+    const bool is_wanted =
+        inside == Inside::along_joints || (inside == Inside::as_it_pays && AlongJoints::pays(tables, layout));
+    std::unique_ptr<AlongJoints> along;
+    if (is_wanted && tables.freedoms() > 0 && AlongJoints::fits(tables, layout))
+        along = std::make_unique<AlongJoints>(
+            tables, structure_of(layout, tables.freedoms(), layout.degree), std::move(solver));
+    return std::make_unique<NullSpaces>(tables, layout, std::move(solver), std::move(along));
 }
 
 }   // namespace livens::inline spacetime_internal

@@ -29,6 +29,9 @@ public:
     /// Reduced rows where it stands, as those of the nodes of begin(): what is zero stays so.
     virtual void carry(double* /*rows*/) const {}
     virtual bool factorise() = 0;
+    /// Whether the matrix is there as a whole: else factorise() may fail where that would not, and there is
+    /// no condition number.
+    virtual bool is_whole() const { return true; }
     /// y <- the scaled twists of unknown nodes, node after node, that the reduced rows of active nodes ask
     /// for; with conditions by component their rows follow, and in y momenta along free motions, then
     /// numbers.
@@ -48,9 +51,17 @@ public:
     virtual void measure_condition(SolveReport& report, const std::function<bool()>& goes_on) = 0;
 };
 
+/// How nodes inside of elements are eliminated.
+enum class Inside {
+    as_a_whole,     ///< dense, with all others, by the solver
+    along_joints,   ///< before, where bodies are held as branches of trees, see AlongJoints
+    as_it_pays,
+};
+
 /// Blocks on null spaces, for a LinearSolver.
 std::unique_ptr<Elimination> null_space_elimination(const ModelTables& tables, const WindowLayout& layout,
-                                                    std::unique_ptr<LinearSolver> solver);
+                                                    std::unique_ptr<LinearSolver> solver,
+                                                    Inside inside = Inside::as_a_whole);
 
 /// One element of degree 1 with a known start and without loads that have a tangent: the tangent couples no
 /// bodies. They are inverted one by one, and the constraints added by their Schur complement, which is small.

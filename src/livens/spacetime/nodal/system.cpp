@@ -39,7 +39,7 @@ void NodalSystem::open(const WindowLayout& layout, const InstantState* first, co
 
 void NodalSystem::choose_elimination()
 {
-    elimination_ = takes_bodies_apart() ? body_elimination(tables_) : on_null_spaces();
+    elimination_ = takes_bodies_apart() ? body_elimination(tables_) : on_null_spaces(false);
 }
 
 /// One element of degree 1 where loads have no tangent.
@@ -49,11 +49,13 @@ bool NodalSystem::takes_bodies_apart() const
            layout_.is_march() && tables_.loads.with_tangent.empty();
 }
 
-std::unique_ptr<Elimination> NodalSystem::on_null_spaces() const
+std::unique_ptr<Elimination> NodalSystem::on_null_spaces(bool as_a_whole) const
 {
+    // a part of a chain may not turn to another elimination by itself
     if (conditions_ != nullptr && conditions_->chain() != nullptr)
         return null_space_elimination(tables_, layout_, solver_of_part(*conditions_->chain()));
-    return null_space_elimination(tables_, layout_, layout_.is_march() ? forward_solver() : chain_solver());
+    return null_space_elimination(tables_, layout_, layout_.is_march() ? forward_solver() : chain_solver(),
+                                  as_a_whole ? Inside::as_a_whole : Inside::as_it_pays);
 }
 
 bool NodalSystem::settle()
@@ -177,6 +179,10 @@ bool NodalSystem::factorise()
 {
     if (elimination_ == nullptr) choose_elimination();
     in_use_ = true;
+    form_all(*elimination_);
+    if (elimination_->factorise()) return true;
+    if (elimination_->is_whole()) return false;
+    elimination_ = on_null_spaces(true);   // which exchanges rows of all that is inside
     form_all(*elimination_);
     return elimination_->factorise();
 }
@@ -374,7 +380,8 @@ void NodalSystem::measure_condition(SolveReport& report, const std::function<boo
     }
     // What solving had is taken as it is, and not kept: its blocks go.
     std::unique_ptr<Elimination> elimination = std::move(elimination_);
-    if (elimination == nullptr || takes_bodies_apart()) elimination = on_null_spaces();
+    if (elimination == nullptr || takes_bodies_apart() || !elimination->is_whole())
+        elimination = on_null_spaces(true);
     form_all(*elimination);
     elimination->measure_condition(report, goes_on);
 }

@@ -101,7 +101,7 @@ private:
     void form_all(Elimination& elimination);
     std::size_t n_node_numbers() const;
     std::ptrdiff_t place_of(int A) const;
-    std::unique_ptr<Elimination> on_null_spaces() const;
+    std::unique_ptr<Elimination> on_null_spaces(bool as_a_whole) const;
     bool evaluate_conditions();
     bool pull(bool are_placed);
     void measure();

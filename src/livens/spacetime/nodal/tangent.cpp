@@ -110,6 +110,7 @@ void Tangent::form_element(const Point& of, int e, Workspace& at)
             sink.close();
         }
     }
+    sink.finish(e);
 }
 
 void Tangent::add_masses(const Point& of, int e, int a, int b, Workspace& at) const

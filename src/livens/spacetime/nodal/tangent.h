@@ -24,6 +24,8 @@ public:
     /// NodalRows of body i by twists of body j: 6 x 6 row by row.
     virtual void block(int body_i, int body_j, const double* values) = 0;
     virtual void close() = 0;
+    /// All pairs of element e were there.
+    virtual void finish(int /*e*/) {}
     /// In place of all mass() of element e, before its pairs are opened, of which those that have nothing
     /// else then are not: the factor of its nodes a, b is k_ab / h, k row by row. False: it is not taken.
     virtual bool take_masses(int /*e*/, const std::vector<double>& /*k*/, double /*h*/) { return false; }

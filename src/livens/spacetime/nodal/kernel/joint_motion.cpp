@@ -74,6 +74,22 @@ bool motion_of(const double* own, int m, int d, const double* above, int n, doub
 
 }   // namespace
 
+bool spacetime_internal::find_motion(const lanes::BlockFunctions& functions, const lanes::JointSize& size,
+                                     const HoldingRows& rows, double* z, double* T)
+{
+    const auto& [m, d, n, p] = size;
+    if (functions.move_joint(rows.own, rows.above, size, least_of_rows, z, T)) return true;
+    for (int A = 0; A < p; ++A) {
+        double own[36], above[36], z_here[36], T_here[36];
+        for (int i = 0; i < m * d; ++i) own[i] = rows.own[i * p + A];
+        for (int i = 0; i < m * n; ++i) above[i] = rows.above[i * p + A];
+        if (!motion_of(own, m, d, above, n, z_here, T_here)) return false;
+        for (int i = 0; i < d * (d - m); ++i) z[i * p + A] = z_here[i];
+        for (int i = 0; i < d * n; ++i) T[i * p + A] = T_here[i];
+    }
+    return true;
+}
+
 GradientPlaces::GradientPlaces(const ModelTables& tables, const RowPattern& pattern, const JointRows& joint,
                                int b)
 {

@@ -15,6 +15,16 @@ struct JointMotion {
     Numbers T_rows, T_columns, z_rows, z_columns;
 };
 
+/// Gradients of a joint's rows by twists of the body that it holds (m, d; A), and of that one's parent
+/// (m, n; A).
+struct HoldingRows {
+    const double *own, *above;
+};
+
+/// z (d, d - m; A) and T (d, n; A) at all nodes. False: rows hang together.
+bool find_motion(const lanes::BlockFunctions& functions, const lanes::JointSize& size,
+                 const HoldingRows& rows, double* z, double* T);
+
 /// Where the gradients of a joint's rows by the twists of one of its bodies stand in those of a pattern.
 struct GradientPlaces {
     struct Part {

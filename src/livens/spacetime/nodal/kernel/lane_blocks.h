@@ -2,6 +2,8 @@
 // Dense matrices whose rows and columns are numbers at p nodes: (i, A) is row i p + A.
 #pragma once
 
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "livens/spacetime/elements/kernel_functions.h"
@@ -25,6 +27,20 @@ struct SquareFactor {
     void solve(const lanes::BlockFunctions& functions, double* x, int columns) const
     {
         functions.solve_square(A.data(), exchanged.data(), static_cast<int>(exchanged.size()), x, columns);
+    }
+    /// x <- A^-T x.
+    void solve_transposed(double* x) const
+    {
+        const int n = static_cast<int>(exchanged.size());
+        const auto take_off = [&](int k, int first, int end) {
+            for (int i = first; i < end; ++i) x[i] -= A[static_cast<std::size_t>(k * n + i)] * x[k];
+        };
+        for (int k = 0; k < n; ++k) {
+            x[k] /= A[static_cast<std::size_t>(k * n + k)];
+            take_off(k, k + 1, n);
+        }
+        for (int k = n; k-- > 0;) take_off(k, 0, k);
+        for (int k = n; k-- > 0;) std::swap(x[k], x[exchanged[static_cast<std::size_t>(k)]]);
     }
 };
 
