@@ -87,7 +87,7 @@ std::vector<Case> cases()
     add("windows of some elements", tests::cubes_on_rods(0.2), of_start, 90, Lobatto{4, 32});
     add("places at both ends", tests::hinged_links(), of_places, 60, Lobatto{4});
     add("places, then momenta, of cubes", tests::cubes_on_rods(0.2), mixed_ends, 50, Lobatto{5});
-    add("eight bricks, along their joints", tests::hanging_bricks(8), of_places, 40, Lobatto{4});
+    add("eight bricks, along their joints", tests::hanging_bricks(8), of_places, 12, Lobatto{6});
     add("eight bricks from a state", tests::hanging_bricks(8), of_start, 40, Lobatto{4, 0});
     add("a loop between places", tests::four_bar(), of_places, 40, Lobatto{3});
     Mixed linear;

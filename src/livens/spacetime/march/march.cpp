@@ -186,14 +186,18 @@ bool March::ends_at_bend(const Elements& of)
 
 void March::compare(const Elements& of)
 {
-    std::vector<double> distances(static_cast<std::size_t>(of.size() + 1));
-    for_each_item(of.size() + 1, least_compared, [&](int i) {
-        const int end = of.first + i;
-        distances[i] =
-            distance_between(window_.at(end).X, attempt_.guess(mesh_.ends[end]).X, options_.length_of_model);
-    });
+    const auto distance_at = [&](int end) {
+        return distance_between(window_.at(end).X, attempt_.guess(mesh_.ends[end]).X,
+                                options_.length_of_model);
+    };
+    std::vector<double> distances;   // of many
+    if (Crew::divides(of.size() + 1, least_compared)) {
+        distances.resize(static_cast<std::size_t>(of.size() + 1));
+        for_each_item(of.size() + 1, least_compared,
+                      [&](int i) { distances[i] = distance_at(of.first + i); });
+    }
     for (int end = of.first; end <= of.last; ++end) {
-        const double distance = distances[end - of.first];
+        const double distance = distances.empty() ? distance_at(end) : distances[end - of.first];
         if (!(distance > report_.guess_distance)) continue;
         if (report_.guess_distance <= doubtful_distance) report_.guess_distance_time = mesh_.ends[end];
         report_.guess_distance = distance;

@@ -82,7 +82,7 @@ void Tangent::form(const WindowLayout& layout, const Nodes& nodes, const NodalRo
         for (int e = begin; e < end; ++e) form_element(of, e, at);
     };
     if (is_divided)
-        in_shares(layout.n_elements(), least_shared, form_share);
+        in_shares(layout.n_elements(), least_elements(tables_), form_share);
     else
         form_share(0, 0, layout.n_elements());
 }

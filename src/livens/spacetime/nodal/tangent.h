@@ -13,6 +13,13 @@ namespace livens::inline spacetime_internal {
 class Nodes;
 class NodalRows;
 
+/// Elements whose tangent a thread has at least: of many freedoms one is worth waking it.
+inline int least_elements(const ModelTables& tables)
+{
+    constexpr int many = 16;
+    return tables.freedoms() < many ? least_shared : 1;
+}
+
 /// Takes a tangent pair by pair of nodes A, B that share element e: open(), then mass() and block() in any
 /// number, then close(). Where two elements share both nodes their blocks add up.
 class TangentSink {

@@ -112,7 +112,7 @@ Numbers AlongJoints::go_in(std::span<const double> x, bool is_transposed)
     const bool of_rows = !is_transposed;
     const int first = first_node(of_rows);
     const auto has = [&](int A) { return of_rows ? layout_->is_active(A) : layout_->is_unknown(A); };
-    for_each_item(n, least_shared, [&](int e) {
+    for_each_item(n, least_elements(tables_), [&](int e) {
         OfElement& of = elements_[e];
         to_inside(x, first, e, of.inside);
         of.ends.assign(static_cast<std::size_t>(of_rows ? between_.n_rows(e) : between_.n_columns(e)), 0.0);
@@ -142,7 +142,7 @@ void AlongJoints::go_out(const Numbers& y, bool is_transposed, std::span<double>
     const bool of_rows = is_transposed;
     const int first = first_node(of_rows);
     const auto has = [&](int A) { return of_rows ? layout_->is_active(A) : layout_->is_unknown(A); };
-    for_each_item(n, least_shared, [&](int e) {
+    for_each_item(n, least_elements(tables_), [&](int e) {
         OfElement& of = elements_[e];
         of.ends.clear();
         for (const int E : {e, e + 1})
