@@ -58,6 +58,7 @@ void AlongJoints::begin(const WindowLayout& layout, const Nodes& nodes, const Nu
     between_.clear();
     while (static_cast<int>(sinks_.size()) < Crew::size())
         sinks_.push_back(std::make_unique<ElementSink>(*this, layout.degree));
+    for (const std::unique_ptr<ElementSink>& sink : sinks_) sink->forget();
 }
 
 TangentSink& AlongJoints::of_thread(int slot) { return *sinks_[static_cast<std::size_t>(slot)]; }

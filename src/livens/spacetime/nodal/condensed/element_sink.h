@@ -18,6 +18,8 @@ class ElementSink final : public TangentSink {
 public:
     ElementSink(AlongJoints& all, int degree);
 
+    /// What came of an element that was not finished.
+    void forget() { e_ = -1; }
     void open(int e, int A, int B) override;
     void mass(int body, double factor, const double* H) override;
     void block(int i, int j, const double* values) override;
