@@ -197,11 +197,8 @@ void AlongJoints::pass_numbers(const Numbers& y, std::span<double> x) const
 void AlongJoints::solve(std::span<double> x, bool is_transposed)
 {
     Numbers y = go_in(x, is_transposed);
-    const auto n_unknowns = static_cast<std::size_t>(size_of(structure_));
-    y.resize(std::max(y.size(), n_unknowns));
     if (!is_transposed) {
         solver_->solve(y);
-        if (structure_.is_part) y.resize(n_unknowns);
         if (by_numbers_.cols > 0) {
             pass_numbers(y, x);
             go_in(x, false);
