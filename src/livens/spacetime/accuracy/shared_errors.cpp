@@ -36,7 +36,7 @@ public:
         is_hidden_ = whole.energy_loss <= hidden;
     }
     /// Of vibrations that are as wide as the root times `width`. What is hidden bounds them badly; but they
-    /// are no wider than the jumps of the elements that took them.
+    /// are no wider than the jumps of the elements that took them, in which the fastest is not resolved.
     double root_for(double width, double jumps) const
     {
         return is_hidden_ && root_ * width > jumps ? jumps / width : root_;
@@ -82,16 +82,19 @@ void spacetime_internal::add_events(const Model& model, const Motion& motion, Er
     int before = 0;
     for (const int event : event_ends(model, motion)) {
         ActivationMismatch off = activation_mismatch(model, motion, event);
-        double slowest = std::numeric_limits<double>::infinity(), shift = 0, turn = 0;
+        double slowest = std::numeric_limits<double>::infinity(), fastest = 0, shift = 0, turn = 0;
         for (const Vibration& one : vibrations_beside(model, motion, event)) {
             if (one.rate * motion.mesh.length(event - 1) < motion.X.degree || one.decay > one.rate) continue;
             slowest = std::min(slowest, one.rate);
+            raise_to(fastest, one.rate);
             raise_to(shift, one.shift);
             raise_to(turn, one.turn);
         }
         if (motion.damps()) {
             double steps = 0;   // of rates
-            for (int e = 0; e < event; ++e) steps += jumps[e] / motion.mesh.length(e);
+            for (int e = 0; e < event; ++e)
+                if (fastest * motion.mesh.length(e) >= motion.X.degree)
+                    steps += jumps[e] / motion.mesh.length(e);
             const double root = lost.root_for(std::max(shift / found.length, turn), steps);
             off.speed += root * shift / found.length;
             off.spin += root * turn;
@@ -113,19 +116,22 @@ void spacetime_internal::add_lost_vibrations(const Model& model, const Motion& m
     if (!motion.damps() || found.empty()) return;
     double longest = 0;
     for (int e = 0; e < motion.n_elements(); ++e) raise_to(longest, motion.mesh.length(e));
-    double shift = 0, turn = 0, speed = 0;   // by the root of twice the energy
+    double shift = 0, turn = 0, speed = 0, fastest = 0;   // by the root of twice the energy; 1/s
     for (const int end : {0, motion.n_elements() / 2, motion.n_elements()}) {
         for (const Vibration& one : vibrations_beside(model, motion, end)) {
             if (one.rate * longest < motion.X.degree || one.rate < one.decay) continue;
+            raise_to(fastest, one.rate);
             raise_to(shift, one.shift / one.rate);
             raise_to(turn, one.turn / one.rate);
             raise_to(speed, one.shift);
         }
     }
     if (shift == 0 && turn == 0) return;
-    double jumps = 0;
-    for (const double jump : velocity_jumps(model, motion)) jumps += jump;
-    const double root = LostEnergy(model, motion).root_for(std::max(shift / found.length, turn), jumps);
+    double lost = 0;
+    const std::vector<double> jumps = velocity_jumps(model, motion);
+    for (int e = 0; e < motion.n_elements(); ++e)
+        if (fastest * motion.mesh.length(e) >= motion.X.degree) lost += jumps[e];
+    const double root = LostEnergy(model, motion).root_for(std::max(shift / found.length, turn), lost);
     for (double& error : found.position) error += root * shift / found.length;
     for (double& error : found.velocity) error += root * speed;
     for (std::size_t i = 0; i < found.orientation.size(); ++i)
