@@ -21,7 +21,7 @@ import sys
 import tempfile
 
 ALLOWED = {"sse2": 4.0, "avx2": 4.0}   # marches
-CHAINS = (("revolute", 10, 4.7), ("revolute", 30, 10), ("spherical", 10, 18.5), ("spherical", 30, 44))   # bricks, marches
+CHAINS = (("revolute", 10, 4.4), ("revolute", 30, 9.6), ("spherical", 10, 17.5), ("spherical", 30, 43))   # bricks, marches
 PARTS = ("factorise", "solve", "move", "residual")
 BODIES = {   # directors at both ends, angular velocity
     "upper": ("[[0.26354355221153770, 0.26037919819550037, -0.9288420044522065], [-0.17915318672817876, 0.9593422858365159, "

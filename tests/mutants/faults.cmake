@@ -1977,10 +1977,19 @@ livens_mutant(NAME elements_of_one_thread_alone
 # Violations that add up along nodes are taken where threads find their changes.
 livens_mutant(NAME violations_before_those_of_the_nodes_before
               FILE spacetime/nodal/nodes.cpp
-              OLD [[if (!is_shared) return std::isfinite(sum);]]
-              NEW [[if (is_shared || !is_shared) return std::isfinite(sum);]]
+              OLD [[if (!Crew::divides(n, least_shared)) {]]
+              NEW [[if (Crew::divides(n, least_shared)) return std::isfinite(sum); else {]]
               TESTS_OF unit_spacetime
               MUST_FAIL Threads.LeaveNoTraceInTheBitsOfMotions)
+
+# Rows in lanes are not scaled by both of their sides.
+livens_mutant(NAME rows_in_lanes_forget_a_side
+              FILE dynamics/lanes/lane_rows.h
+              RECOMPILE spacetime/elements/lanes_sse2.cpp
+              OLD [[const Lanes<W> square = squares[0] + squares[1];]]
+              NEW [[const Lanes<W> square = squares[0];]]
+              TESTS_OF unit_spacetime
+              MUST_FAIL RowsInLanes.AreThoseOfOneNode)
 
 # What goes from item to item does not wait for the threads that have the items.
 livens_mutant(NAME what_follows_does_not_wait

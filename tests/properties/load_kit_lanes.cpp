@@ -111,7 +111,7 @@ double LoadAtPoints::difference(const std::function<void(AlignedDoubles& F, int 
         factors[c] = factor(c);
         instants.push_back(at_[c].at);
     }
-    LoadLanes side_by_side(tables_, functions.loads, W, n);
+    LoadLanes side_by_side(tables_, functions.loads->run, W, n);
     side_by_side.begin(instants);
     for (int twice = 0; twice < 2; ++twice)   // nothing stays from the first time
         side_by_side.evaluate(X.data(), V.data(), factors.data(), first_turns(), F.data());

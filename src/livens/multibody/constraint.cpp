@@ -12,15 +12,52 @@
 
 namespace livens {
 
+namespace {
+
+/// act(a, b, C_ab) of the entries that are not zero: forms know few columns.
+template <typename Act>
+void for_entries(const Matrix4& C, const Act& act)
+{
+    for (int a = 0; a < 4; ++a)
+        for (int b = 0; b < 4; ++b)
+            if (C(a, b) != 0) act(a, b, C(a, b));
+}
+
+/// Column b of `to` += factor times column a of X.
+void add_column(double factor, const Matrix34& X, int a, Matrix34& to, int b)
+{
+    for (int i = 0; i < 3; ++i) to(i, b) += factor * X(i, a);
+}
+
+double product(const Matrix34& X, int a, const Matrix34& Y, int b)
+{
+    return X(0, a) * Y(0, b) + X(1, a) * Y(1, b) + X(2, a) * Y(2, b);
+}
+
+/// tr(X C Y^T)
+double product(const Matrix34& X, const Matrix4& C, const Matrix34& Y)
+{
+    double sum = 0;
+    for_entries(C, [&](int a, int b, double c) { sum += c * product(X, a, Y, b); });
+    return sum;
+}
+
+}   // namespace
+
 FormGradient form_gradient(const QuadraticForm& f, int i, int j, const Configurations& X)
 {
     const Matrix34 X_j = X[j];
-    FormGradient g{{}, X_j * f.c_jj + f.b_j};
+    FormGradient g{{}, f.b_j};
+    for_entries(f.c_jj, [&](int a, int b, double c) { add_column(c, X_j, a, g.j, b); });
     // Terms of the world were folded into B_j and c when the row was made.
     if (i == world) return g;
     const Matrix34 X_i = X[i];
-    g.j += X_i * f.c_ij;
-    g.i = X_i * f.c_ii + X_j * transpose(f.c_ij) + f.b_i;
+    g.i = f.b_i;
+    for_entries(f.c_ii, [&](int a, int b, double c) { add_column(c, X_i, a, g.i, b); });
+    for_entries(f.c_ij, [&](int a, int b, double c) {
+        add_column(c, X_i, a, g.j, b);
+        add_column(c, X_j, b, g.i, a);
+    });
     return g;
 }
 
@@ -38,10 +75,10 @@ double form_rate(const QuadraticForm& f, int i, int j, const Configurations& X, 
 double form_curvature(const QuadraticForm& f, int i, int j, const Configurations& V)
 {
     const Matrix34 V_j = V[j];
-    double curvature = dot(V_j * f.c_jj, V_j);
+    const double curvature = product(V_j, f.c_jj, V_j);
     if (i == world) return curvature;
     const Matrix34 V_i = V[i];
-    return curvature + dot(V_i * f.c_ii, V_i) + 2 * dot(V_i * f.c_ij, V_j);
+    return curvature + product(V_i, f.c_ii, V_i) + 2 * product(V_i, f.c_ij, V_j);
 }
 
 /// 1/2 <gradient + gradient_from, step>, which is the form less its value at X_from: it is quadratic.
@@ -83,10 +120,10 @@ SmoothFunction::Point function_point(const ConstraintRow& row, const SmoothFunct
 double form_value(const QuadraticForm& f, int i, int j, const Configurations& X)
 {
     const Matrix34 X_j = X[j];
-    double phi = 0.5 * dot(X_j * f.c_jj, X_j) + dot(f.b_j, X_j);
+    double phi = 0.5 * product(X_j, f.c_jj, X_j) + dot(f.b_j, X_j);
     if (i != world) {
         const Matrix34 X_i = X[i];
-        phi += dot(0.5 * (X_i * f.c_ii) + X_j * transpose(f.c_ij) + f.b_i, X_i);
+        phi += 0.5 * product(X_i, f.c_ii, X_i) + product(X_i, f.c_ij, X_j) + dot(f.b_i, X_i);
     }
     return phi + f.c;
 }

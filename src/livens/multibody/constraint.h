@@ -117,6 +117,9 @@ public:
         return X;
     }
 
+    /// 12 numbers a body.
+    const double* data() const { return X_; }
+
 private:
     const double* X_;
 };

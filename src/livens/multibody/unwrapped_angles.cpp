@@ -9,10 +9,42 @@
 
 namespace livens {
 
+UnwrappedAngles::Terms::Terms(const PairForm& form) : constant(form.c)
+{
+    const auto add = [this](int x, int y, double factor) {
+        if (factor != 0) products.push_back({x, y, factor});
+    };
+    const auto add_entries = [this](const Matrix34& b, int first) {
+        for (int i = 0; i < 12; ++i)
+            if (b.a[i] != 0) entries.push_back({first + i, b.a[i]});
+    };
+    const bool has_i = form.body_i != world;
+    const int i = 12 * form.body_i, j = 12 * form.body_j;
+    for (int a = 0; a < 4; ++a)
+        for (int b = 0; b < 4; ++b) {
+            add(j + 3 * a, j + 3 * b, 0.5 * form.c_jj(a, b));
+            if (!has_i) continue;
+            add(i + 3 * a, i + 3 * b, 0.5 * form.c_ii(a, b));
+            add(i + 3 * a, j + 3 * b, form.c_ij(a, b));
+        }
+    add_entries(form.b_j, j);
+    if (has_i) add_entries(form.b_i, i);
+}
+
+double UnwrappedAngles::Terms::value(const double* X) const
+{
+    double sum = constant;
+    for (const auto& [place, factor] : entries) sum += factor * X[place];
+    for (const auto& [x, y, factor] : products)
+        sum += factor * (X[x] * X[y] + X[x + 1] * X[y + 1] + X[x + 2] * X[y + 2]);
+    return sum;
+}
+
 UnwrappedAngles::UnwrappedAngles(const Model& model) : first_{0}
 {
     for (const Load& load : model.loads()) {
-        angles_.insert(angles_.end(), load.angles.begin(), load.angles.end());
+        for (const JointCoordinate& angle : load.angles)
+            angles_.push_back({Terms(angle.forms[0]), Terms(angle.forms[1])});
         first_.push_back(static_cast<int>(angles_.size()));
     }
 }
@@ -35,10 +67,8 @@ void UnwrappedAngles::follow_of(int load, const Configurations& X, std::span<dou
 void UnwrappedAngles::follow_some(const Configurations& X, std::span<double> row, int from, int until) const
 {
     for (int i = from; i < until; ++i) {
-        const PairForm &c = angles_[i].forms[0], &s = angles_[i].forms[1];
-        const double angle =
-            arc_tangent(form_value(s, s.body_i, s.body_j, X), form_value(c, c.body_i, c.body_j, X));
-        row[i] = turned_to(angle, row[i]);
+        const auto& [cosine, sine] = angles_[i];
+        row[i] = turned_to(arc_tangent(sine.value(X.data()), cosine.value(X.data())), row[i]);
     }
 }
 

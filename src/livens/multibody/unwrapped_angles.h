@@ -36,9 +36,30 @@ public:
     }
 
 private:
+    /// What of a form is not zero; places among the numbers of X.
+    struct Terms {
+        explicit Terms(const PairForm& form);
+        double value(const double* X) const;
+
+        struct Product {
+            int x, y;   ///< columns
+            double factor;
+        };
+        struct Entry {
+            int place;
+            double factor;
+        };
+        double constant;
+        std::vector<Product> products;
+        std::vector<Entry> entries;
+    };
+    struct Angle {
+        Terms cosine, sine;
+    };
+
     void follow_some(const Configurations& X, std::span<double> row, int from, int until) const;
 
-    std::vector<JointCoordinate> angles_;
+    std::vector<Angle> angles_;
     std::vector<int> first_;   ///< of each load, and their number
 };
 

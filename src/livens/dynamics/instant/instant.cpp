@@ -46,10 +46,9 @@ void InstantState::take(const InstantState& other)
     has_past = other.has_past;
     held.rows = other.held.rows;
     held.are_new = held.has_basis = false;
-    for (const auto field :
-         {&InstantState::angles, &InstantState::X, &InstantState::X_low, &InstantState::maps,
-          &InstantState::velocity, &InstantState::p, &InstantState::momentum, &InstantState::jerk,
-          &InstantState::snap})
+    for (const auto field : {&InstantState::angles, &InstantState::X, &InstantState::X_low,
+                             &InstantState::maps, &InstantState::velocity, &InstantState::p,
+                             &InstantState::momentum, &InstantState::jerk, &InstantState::snap})
         this->*field = other.*field;
     for (const int side : {0, 1}) {
         acceleration[side] = other.acceleration[side];
@@ -154,11 +153,7 @@ bool InstantSystem::rows_are_fit(const InstantState& state)
     pivot_at_choice_ = pivot_at_choice_ > 0 ? pivot_at_choice_ : state.held.smallest_pivot;
     // where the mechanism turns, rows that were independent grow alike: others hold better long before
     if (!(state.held.smallest_pivot > std::max(1e-6, 0.1 * pivot_at_choice_))) return false;
-    for (int r = 0; r < tables_.n_rows(); ++r) {
-        const double phi = tables_.rows.value(r, {state.t}, state.X.data());
-        if (!(std::abs(phi) <= 1e-9 * tables_.rows[r].row->scale)) return false;
-    }
-    return true;
+    return tables_.first_violated_beside(state.held.rows, {state.t}, state.X.data(), 1e-9) < 0;
 }
 
 /// out <- D^T Mr D y: y itself where every inertia is definite.

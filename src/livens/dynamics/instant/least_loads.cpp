@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+
+#include "livens/solvers/short_rows.h"
 
 namespace livens {
 
@@ -33,6 +36,25 @@ double factorise_square(int n, double* a)
         row[i] = std::sqrt(pivot);
     }
     return smallest;
+}
+
+/// A vector of a body's own coordinates, in space.
+Vector3 in_space(const Matrix34& X, const Vector3& v)
+{
+    return v[0] * X.column(1) + v[1] * X.column(2) + v[2] * X.column(3);
+}
+
+/// to += factor x, six numbers.
+inline void add_scaled(double factor, const double* x, double* to)
+{
+    typedef double Two __attribute__((vector_size(16)));
+    for (int i = 0; i < 6; i += 2) {
+        Two a, b;
+        std::memcpy(&a, x + i, sizeof a);
+        std::memcpy(&b, to + i, sizeof b);
+        b += factor * a;
+        std::memcpy(to + i, &b, sizeof b);
+    }
 }
 
 }   // namespace
@@ -131,29 +153,25 @@ void LeastLoads::form(const Joint& joint, Instant at, std::span<const Matrix34> 
     double g[RowTables::gradient_size];
     for (int r = 0; r < n; ++r) {
         const RowTable& row = tables_[static_cast<std::size_t>(part.first_row + r)];
-        std::fill_n(g, 12 * row.n_sides, 0.0);
         tables_.gradient(part.first_row + r, at, X.data()->data(), g);
         for (int side = 0; side < row.n_sides; ++side) {
             const int body = row.bodies[side];
             const double* of_body = g + 12 * side;
-            const Vector3 force{of_body[0], of_body[1], of_body[2]};
-            const auto moment_about = [&](const Vector3& point) {
-                Vector3 moment{};
-                for (int i = 1; i < 4; ++i) {
-                    const double* column = of_body + 3 * i;
-                    moment += cross(X[body].column(i),
-                                    Vector3{column[0], column[1], column[2]} - point[i - 1] * force);
-                }
-                return (1 / length_) * moment;
+            Vector3 force{}, moment{};   // about the body's origin
+            for (const int a : row.columns[side]) {
+                const Vector3 column{of_body[a], of_body[a + 1], of_body[a + 2]};
+                if (a == 0)
+                    force = column;
+                else
+                    moment += cross(X[body].column(a / 3), column);
+            }
+            const auto put_about = [&](const Vector3& point, double sign, double* to) {
+                const Vector3 about = (sign / length_) * (moment - cross(in_space(X[body], point), force));
+                for (int i = 0; i < 3; ++i) to[i] = sign * force[i], to[3 + i] = about[i];
             };
             const auto place = std::ranges::find(part.bodies, body) - part.bodies.begin();
-            double* load = part.loads.data() + 6 * (r * n_bodies + place);
-            const Vector3 moment = moment_about(poles_[body]);
-            for (int i = 0; i < 3; ++i) load[i] = force[i], load[3 + i] = moment[i];
-            if (body != joint.second) continue;
-            const Vector3 torque = moment_about(joint.point_second);
-            for (int i = 0; i < 3; ++i)
-                part.reactions[6 * r + i] = -force[i], part.reactions[6 * r + 3 + i] = -torque[i];
+            put_about(poles_[body], 1, part.loads.data() + 6 * (r * n_bodies + place));
+            if (body == joint.second) put_about(joint.point_second, -1, part.reactions.data() + 6 * r);
         }
     }
     for (int r = 0; r < n; ++r)
@@ -167,27 +185,28 @@ void LeastLoads::form(const Joint& joint, Instant at, std::span<const Matrix34> 
 /// What a joint adds to G^T M^-1 G.
 void LeastLoads::add(Part& part)
 {
-    const int n = part.n_rows, n_columns = 6 * static_cast<int>(part.bodies.size());
-    for (int r = 0; r < n; ++r) {
-        double* to = part.scaled.data() + r * n_columns;
-        std::copy_n(part.loads.data() + r * n_columns, n_columns, to);
-        for (int k = 0; k < r; ++k)
-            for (int c = 0; c < n_columns; ++c)
-                to[c] -= part.square[r * n + k] * part.scaled[k * n_columns + c];
-        for (int c = 0; c < n_columns; ++c) to[c] /= part.square[r * n + r];
-    }
-    for (std::size_t b = 0; b < part.bodies.size(); ++b)
-        for (int i = 0; i < 6; ++i) {
-            const int at = 6 * static_cast<int>(b) + i;
-            double* to = line(6 * part.bodies[b] + i);
-            for (int r = 0; r < n; ++r) {
-                const double* scaled = part.scaled.data() + r * n_columns;
-                if (scaled[at] == 0) continue;
-                for (std::size_t a = 0; a <= b; ++a)
-                    for (int c = 0; c < (a < b ? 6 : i + 1); ++c)
-                        to[6 * part.bodies[a] + c] += scaled[at] * scaled[6 * a + c];
-            }
+    const int n = part.n_rows, n_bodies = static_cast<int>(part.bodies.size()), n_columns = 6 * n_bodies;
+    part.scaled = part.loads;
+    for (int r = 0; r < n; ++r)
+        for (int b = 0; b < n_bodies; ++b) {
+            double six[6];
+            double* const to = part.scaled.data() + r * n_columns + 6 * b;
+            std::copy_n(to, 6, six);
+            for (int k = 0; k < r; ++k)
+                add_scaled(-part.square[r * n + k], part.scaled.data() + k * n_columns + 6 * b, six);
+            const double inverse = 1 / part.square[r * n + r];
+            for (int i = 0; i < 6; ++i) to[i] = inverse * six[i];
         }
+    for (int b = 0; b < n_bodies; ++b)
+        for (int a = 0; a <= b; ++a)
+            for (int i = 0; i < 6; ++i) {
+                double sums[6] = {};
+                const double* scaled = part.scaled.data();
+                for (int r = 0; r < n; ++r, scaled += n_columns)
+                    add_scaled(scaled[6 * b + i], scaled + 6 * a, sums);
+                double* to = line(6 * part.bodies[b] + i) + 6 * part.bodies[a];
+                for (int c = 0; c < (a < b ? 6 : i + 1); ++c) to[c] += sums[c];
+            }
 }
 
 /// L of L L^T, where lines of what is free are zero. False: what is free is not clear.
@@ -219,16 +238,16 @@ bool LeastLoads::factorise()
 void LeastLoads::solve(double* y) const
 {
     const int n = static_cast<int>(first_.size());
+    const RowFunctions& rows = row_functions();
     for (int i = 0; i < n; ++i) {
         const double* row = line(i);
-        double sum = y[i];
-        for (int k = first_[i]; k < i; ++k) sum -= row[k] * y[k];
+        const double sum = y[i] - inner(rows, row + first_[i], y + first_[i], i - first_[i]);
         y[i] = row[i] > 0 ? sum / row[i] : 0;
     }
     for (int i = n; i-- > 0;) {
         const double* row = line(i);
         y[i] = row[i] > 0 ? y[i] / row[i] : 0;
-        for (int k = first_[i]; k < i; ++k) y[k] -= row[k] * y[i];
+        subtract_scaled(rows, y + first_[i], y[i], row + first_[i], i - first_[i]);
     }
 }
 
@@ -238,9 +257,10 @@ void LeastLoads::add_push(const double* multipliers, double factor, std::vector<
     for (const Part& part : parts_) {
         const double* load = part.loads.data();
         for (int r = 0; r < part.n_rows; ++r)
-            for (const int body : part.bodies)
-                for (int i = 0; i < 6; ++i)
-                    push[6 * body + i] += factor * multipliers[part.first_row + r] * *load++;
+            for (const int body : part.bodies) {
+                add_scaled(factor * multipliers[part.first_row + r], load, push.data() + 6 * body);
+                load += 6;
+            }
     }
 }
 

@@ -16,9 +16,9 @@ constexpr double share_of_rows = 1e-8;   // in the sum of squares
 
 /// What the sum of squares is made of, by multipliers: of each joint [f; t / L] on its second body, at its
 /// point, and behind them 1e-8 of the rows, which decide where some of them say the same.
-class Terms {
+class WrenchTerms {
 public:
-    Terms(const Model& model, const RowWrenches& wrenches, std::span<const double> sizes)
+    WrenchTerms(const Model& model, const RowWrenches& wrenches, std::span<const double> sizes)
         : model_(model), wrenches_(wrenches), sizes_(sizes),
           n_joints_(static_cast<int>(model.joints().size()))
     {}
@@ -73,7 +73,7 @@ UniqueReactions least_reactions(const Model& model, std::span<const Matrix34> X,
 
     const RowWrenches wrenches = row_wrenches(model, X);
     const Dependencies known = dependencies(model, X, independent, wrenches);
-    const Terms terms(model, wrenches, known.sizes);
+    const WrenchTerms terms(model, wrenches, known.sizes);
     const int n_sets = static_cast<int>(multipliers.size()) / n;
     DenseMatrix null(n, n_null), of_null(terms.n(), n_null), of_sets(terms.n(), n_sets);
     for (int k = 0; k < n_null; ++k) {

@@ -65,6 +65,40 @@ void form_gradients(const Pattern& p, const Values& v)
     add_weighted<W>(p, v);
 }
 
+/// The sum of squares does not depend on which of two bodies comes first. A row without a gradient stays
+/// zero.
+template <int W>
+LIVENS_INLINE Lanes<W> scale_of(const std::int32_t* begin, const double* entries)
+{
+    Lanes<W> squares[2];
+    for (int side = 0; side < 2; ++side) {
+        squares[side] = all<W>(0);
+        for (int e = begin[side]; e < begin[side + 1]; ++e) {
+            const Lanes<W> y = load<W>(entries + e * W);
+            squares[side] += y * y;
+        }
+    }
+    const Lanes<W> square = squares[0] + squares[1];
+    Lanes<W> scale = 1 / root(square);
+    for (int i = 0; i < scale.count; ++i)
+        scale.part[i] = square.part[i] > 0 ? scale.part[i] : spread<W>(1);
+    return scale;
+}
+
+template <int W>
+void unit_rows(const Pattern& p, const Values& v, const UnitRows& to)
+{
+    form_products<W>(p, v, v, false);
+    form_gradients<W>(p, v);
+    const std::int32_t* begin = to.begin;
+    for (int r = 0; r < p.n_rows; ++r, begin += 2) {
+        const Lanes<W> scale = scale_of<W>(begin, v.gradients);
+        store(to.scales + r * W, scale);
+        for (int e = begin[0]; e < begin[2]; ++e)
+            store(to.entries + e * W, scale * load<W>(v.gradients + e * W));
+    }
+}
+
 template <int W>
 void form_violations(const Pattern& p, const double* constants, const double* numbers, const Values& v)
 {

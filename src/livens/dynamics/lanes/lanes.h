@@ -78,6 +78,12 @@ struct GradientPattern {
     const Column* columns;
     Sums entries;   ///< without terms: constant
 };
+/// Entries of gradients, row by row, and what they are multiplied by.
+struct UnitRows {
+    const std::int32_t* begin;   ///< of the entries of a row's first side, then of its second one
+    double *entries, *scales;
+};
+
 /// The factor of G G^T.
 struct FactorPattern {
     const Block* blocks;

@@ -162,6 +162,7 @@ LoadsAtInstant::LoadsAtInstant(const ModelTables& tables)
 void LoadsAtInstant::add(Instant at, const double* X, const double* V, double* raw,
                          std::span<const double> turns, bool far_from_bends)
 {
+    if (tables_.model->loads().empty()) return;
     if (turns.empty() && !tables_.loads.turns.empty()) return tables_.loads.add(at, X, V, 1, raw, turns);
     const auto to_centres = [this](const double* of, std::vector<double>& x) {
         std::copy_n(of, x.size(), x.begin());

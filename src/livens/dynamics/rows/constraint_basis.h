@@ -9,6 +9,19 @@
 
 namespace livens::inline dynamics_internal {
 
+/// Columns D^T Ghat^T / s that somebody else has evaluated: of each row its entries, that far apart.
+struct KnownColumns {
+    const int* begin = nullptr;   ///< of its first side's entries, then of its second one's
+    const int* twist = nullptr;   ///< of each entry
+    const double *values = nullptr, *scales = nullptr;   ///< entries, and 1 / s of the rows
+    int apart = 0;
+
+    /// A row without entries is not known.
+    bool knows(int row) const { return begin != nullptr && begin[2 * row] < begin[2 * row + 2]; }
+    /// Returns the scale.
+    double take(int row, double* column, int n_twists) const;
+};
+
 /// An orthogonal basis of the constraint directions at one configuration, with the scaling of its rows.
 struct ConstraintBasis {
     OrthogonalBasis q;               ///< of the columns D^T Ghat^T / s
@@ -21,15 +34,15 @@ struct ConstraintBasis {
     const double* gradient(int column) const { return gradients.data() + (longest_gradient + 1) * column; }
     double row_scale(int column) const { return gradient(column)[longest_gradient]; }
     void resize(const ModelTables& tables, bool all_rows);
-    /// The basis for given rows. Returns the smallest scaled pivot.
+    /// The basis for given rows, of which some may be known. Returns the smallest scaled pivot.
     double build(const ModelTables& tables, Instant at, const double* X, const double* maps,
-                 const std::vector<int>& which, bool keep_choices);
+                 const std::vector<int>& which, bool keep_choices, const KnownColumns& known = {});
     /// Chooses the rows by column pivoting among all.
     double choose(const ModelTables& tables, Instant at, const double* X, const double* maps);
 
 private:
-    void fill(const ModelTables& tables, int column, int row, Instant at, const double* X,
-                const double* maps);
+    void fill(const ModelTables& tables, int column, int row, Instant at, const double* X, const double* maps,
+              const KnownColumns& known);
 };
 
 }   // namespace livens::inline dynamics_internal

@@ -2,6 +2,7 @@
 #include "livens/dynamics/rows/tables.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace livens {
@@ -40,6 +41,16 @@ ModelTables::ModelTables(const Model& the_model, std::vector<int> rows_to_solve,
             end = std::max(end, bodies[b].first + bodies[b].dofs);
         }
     }
+}
+
+int ModelTables::first_violated_beside(const std::vector<int>& held, Instant at, const double* X,
+                                       double most) const
+{
+    std::vector<char> is_held(static_cast<std::size_t>(n_rows()), 0);
+    for (const int r : held) is_held[r] = 1;
+    for (int r = 0; r < n_rows(); ++r)
+        if (is_held[r] == 0 && !(std::abs(rows.value(r, at, X)) <= most * rows[r].row->scale)) return r;
+    return -1;
 }
 
 void ModelTables::wrench(int r, int side, const double* X, const double* maps, const double* g,

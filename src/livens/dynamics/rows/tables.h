@@ -45,6 +45,9 @@ struct ModelTables {
     int n_bodies() const { return bodies.n_bodies(); }
     int n_rows() const { return model->n_rows(); }
     int freedoms() const { return n_twists - rank; }
+    /// The first row of the joints that is not among these and is off by more than so much of its scale; -1:
+    /// there is none.
+    int first_violated_beside(const std::vector<int>& held, Instant at, const double* X, double most) const;
 
     /// Force and moment about the centre of mass of one side's gradient, 6 numbers.
     void wrench(int r, int side, const double* X, const double* maps, const double* g, double* q) const;

@@ -63,6 +63,17 @@ struct BlockFunctions {
                        double* T);
 };
 
+/// Of a program of loads, in W lanes.
+struct LoadFunctions {
+    /// Of X and X' at the load points only what it looks at, into its registers.
+    void (*interpolate_arms)(const LoadProgram&, const double* start, const double* increments,
+                             const double* M, const double* dM);
+    /// Loads there, and what they are at the nodes of rows.
+    void (*run)(const LoadProgram&, const double* X, const double* V, const double* factors, double* F);
+    void (*share_out)(const LoadProgram&, const double* factors, const double* M_rows, double* loads);
+    void (*share_columns)(const LoadProgram&, const double* at_points, const double* M_rows, double* loads);
+};
+
 /// The functions of one set of instructions for W lanes.
 struct Functions {
     int width;
@@ -71,16 +82,12 @@ struct Functions {
     void (*extrapolate)(int n_bodies, int n, const double* before, const double* weights, double* place);
     /// Numbers and increments from places; then gradients and violations.
     void (*configure)(const Pattern&, const Values& start, const Values& nodes);
+    /// Products and gradients of quadratic forms, from the other numbers, scaled to norm one.
+    void (*unit_rows)(const Pattern&, const Values& nodes, const UnitRows&);
     /// The factor, from gradients.
     void (*factorise)(const Pattern&, const Values& nodes);
-    /// X and X' at the load points, and only what a program looks at, into its registers.
+    /// X and X' at the load points.
     void (*interpolate)(const Pattern&, const Values& start, const Values& nodes, const Rule&);
-    void (*interpolate_arms)(const LoadProgram&, const double* start, const double* increments,
-                             const double* M, const double* dM);
-    /// Loads there, and what they are at the nodes of rows.
-    void (*loads)(const LoadProgram&, const double* X, const double* V, const double* factors, double* F);
-    void (*share_out)(const LoadProgram&, const double* factors, const double* M_rows, double* loads);
-    void (*share_columns)(const LoadProgram&, const double* at_points, const double* M_rows, double* loads);
     /// Balances, less what multipliers take.
     void (*balance)(const Pattern&, const Values& start, const Values& nodes, const Rule&, bool first,
                     Sizes&);
@@ -92,6 +99,7 @@ struct Functions {
     void (*move)(const Pattern&, const Values& nodes, const Rule&, Sizes&);
     /// Twist rows, about the centres, of what multipliers take at all nodes: 6 scalars a body.
     void (*sum_impulses)(const Pattern&, const Values& start, const Values& nodes, double* sum);
+    const LoadFunctions* loads;
     const BlockFunctions* blocks;
 };
 

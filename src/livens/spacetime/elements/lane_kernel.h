@@ -245,20 +245,21 @@ void sum_impulses(const Pattern& p, const Values& start, const Values& v, double
 }
 
 template <int W>
+constexpr LoadFunctions loads_of{interpolate_arms<W>, run_loads<W>, share_out<W>, share_columns<W>};
+
+template <int W>
 constexpr Functions functions_of{W,
                                  extrapolate<W>,
                                  configure<W>,
+                                 unit_rows<W>,
                                  factorise<W>,
                                  interpolate<W>,
-                                 interpolate_arms<W>,
-                                 run_loads<W>,
-                                 share_out<W>,
-                                 share_columns<W>,
                                  balance<W>,
                                  propose<W>,
                                  project<W>,
                                  move<W>,
                                  sum_impulses<W>,
+                                 &loads_of<W>,
                                  &blocks_of};
 
 /// For degrees up to 18, with as few lanes as registers have room for.

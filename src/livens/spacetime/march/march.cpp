@@ -207,7 +207,7 @@ void March::compare(const Elements& of)
 AcceptedElements March::close(const Elements& of)
 {
     AcceptanceCriteria criteria = partition().criteria(of);
-    const AcceptedElements closed = window_.close(criteria, report_);
+    AcceptedElements closed = window_.close(criteria, report_);
     if (closed.loss == RankLoss::none || closed.n_elements > 0 || of.size() > 1) return closed;
     const bool is_end = closed.loss == RankLoss::at_end, can_move = partition().may_move_end(of);
     if (is_end && !can_move) troubles_.singular_end = mesh_.ends[far(of)];

@@ -87,16 +87,16 @@ AcceptedElements NodalWindow::close(const AcceptanceCriteria& criteria, SolveRep
         return {};
     const std::vector<double> momenta = kernel_.is_solved() ? std::vector<double>() : end_.momenta(system_);
     ElementCloser by{end_, checks_, report};
-    if (close_in_shares(criteria, momenta, by.closed)) return by.closed;
+    if (close_in_shares(criteria, momenta, by.closed)) return std::move(by.closed);
     for (int e = 0; e < layout_.n_elements(); ++e) {
         const double* momentum = momenta.empty() ? nullptr : momenta.data() + e * tables_.n_twists;
-        if (!is_believed(by, e, criteria, momentum)) return by.closed;
+        if (!is_believed(by, e, criteria, momentum)) return std::move(by.closed);
         checks_.take(system_.nodes(), e, std::move(by.unseen));
         close_element(by, e);
         ++by.closed.n_elements;
     }
     is_ready_ = true;
-    return by.closed;
+    return std::move(by.closed);
 }
 
 /// False: one by one is better, as one of them is not believed, or rows are chosen anew on the way.

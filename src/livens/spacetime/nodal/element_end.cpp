@@ -223,14 +223,11 @@ std::string ElementEnd::contradiction() const
 {
     const InstantState& state = states_[1 - now_];
     if (tables_.rank == tables_.n_rows()) return {};
-    for (int r = 0; r < tables_.n_rows(); ++r) {
-        const ConstraintRow& row = *tables_.rows[r].row;
-        if (std::abs(tables_.rows.value(r, {state.t}, state.X.data())) / row.scale < 1e-8) continue;
-        return tables_.model->row_name(r) +
-               ": was redundant at the start and contradicts the other joints by t = " + to_text(state.t, 6) +
-               " s";
-    }
-    return {};
+    const int r = tables_.first_violated_beside(state.held.rows, {state.t}, state.X.data(), 1e-8);
+    if (r < 0) return {};
+    return tables_.model->row_name(r) +
+           ": was redundant at the start and contradicts the other joints by t = " + to_text(state.t, 6) +
+           " s";
 }
 
 const double* ElementEnd::multipliers(const NodalSystem& system, int e, int a)

@@ -32,7 +32,7 @@ ElementLoads::ElementLoads(const ModelTables& tables, const ElementRule& rule)
 ElementLoads::Workspace::Workspace(const ModelTables& tables, const ElementRule& rule)
 {
     const lanes::Functions& functions = *lanes::functions(rule.degree);
-    lanes = std::make_unique<LoadLanes>(tables, functions.loads, functions.width, rule.degree);
+    lanes = std::make_unique<LoadLanes>(tables, functions.loads->run, functions.width, rule.degree);
     X.assign(12 * tables.bodies.size() * static_cast<std::size_t>(functions.width), 0.0);
     V = F = X;
     factors.assign(static_cast<std::size_t>(functions.width), 0.0);

@@ -17,7 +17,7 @@ namespace livens {
 LooksInLanes::LooksInLanes(const ModelTables& tables, const ElementRule& rule, RecordedLoads what,
                            std::vector<double> shares)
     : tables_(tables), rule_(rule), what_(what), functions_(lanes::functions(rule.degree)),
-      lanes_(tables, functions_->loads, functions_->width, functions_->width, what), all_(shares),
+      lanes_(tables, functions_->loads->run, functions_->width, functions_->width, what), all_(shares),
       first_(tables.model->loads().size(), -1)
 {
     std::vector<double> points;
@@ -129,7 +129,7 @@ void LooksInLanes::look(const WindowLayout& layout, const NodePositions& nodes, 
             instants[l] = {layout.times[e] + share * weights_.h, Side::middle};
         }
         lanes_.begin(instants);
-        functions_->interpolate_arms(lanes_.view(), start_.data(), increments_.data(),
+        functions_->loads->interpolate_arms(lanes_.view(), start_.data(), increments_.data(),
                                      weights_.M.data() + first * W, weights_.dM.data() + first * W);
         lanes_.go_on(turns_);
         keep(first);

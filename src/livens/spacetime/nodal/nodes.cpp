@@ -247,6 +247,11 @@ void Nodes::begin_constraining()
     }
     const auto n_threads = static_cast<std::size_t>(Crew::size());
     if (work_.size() < n_threads) work_.resize(n_threads, std::vector<double>(2 * size_, 0.0));
+    if (!in_lanes_ || in_lanes_->rows() != rows()) {
+        in_lanes_.emplace(tables_, rows(), static_cast<int>(known_.size()) - 1);
+        lanes_.clear();
+    }
+    if (lanes_.size() < n_threads) lanes_.resize(n_threads, in_lanes_->workspace());
     if (has_start_ || known_[0] == nullptr) return;
     has_start_ = true;
     pivots_[0] = known_[0]->smallest_pivot;
@@ -288,30 +293,31 @@ void Nodes::add_violations(int e, int B, const Change& change, double& sum)
     }
 }
 
-/// Where threads share it bases come first, since changes are told by those of two nodes, and violations
-/// last, which add up along the nodes.
+/// Bases come first, of as many nodes at a time as there are lanes, and violations last, which add up along
+/// the nodes.
 bool Nodes::constrain(const WindowLayout& layout, bool same_choices)
 {
     near_ = true;
     begin_constraining();
     const int n = layout.n_elements(), degree = rule_.degree;
-    const bool is_shared = Crew::divides(n, least_shared);
+    in_shares(n, least_shared, [&](int slot, int begin, int end) {
+        for (int e = begin; e < end; ++e) {
+            Patience::ask();
+            take_differences(e);
+        }
+        const int first = begin == 0 && layout.is_unknown(0) ? 0 : begin * degree + 1, last = end * degree;
+        build_bases(slot, first, layout.is_unknown(last) ? last + 1 : last, same_choices);
+    });
     const auto for_nodes = [&](int e, const auto& act) {
         const int last = layout.is_unknown((e + 1) * degree) ? degree : degree - 1;
         for (int B = e == 0 && layout.is_unknown(0) ? 0 : 1; B <= last; ++B) act(B);
     };
     double sum = 0;
-    in_shares(n, least_shared, [&](int, int begin, int end) {
-        for (int e = begin; e < end; ++e) {
-            Patience::ask();
-            take_differences(e);
-            for_nodes(e, [&](int B) {
-                build_basis(e * degree + B, same_choices);
-                if (!is_shared) add_violations(e, B, change_at(e, B, work_[0].data()), sum);
-            });
-        }
-    });
-    if (!is_shared) return std::isfinite(sum);
+    if (!Crew::divides(n, least_shared)) {
+        for (int e = 0; e < n; ++e)
+            for_nodes(e, [&](int B) { add_violations(e, B, change_at(e, B, work_[0].data()), sum); });
+        return std::isfinite(sum);
+    }
     in_order_behind(
         {n, least_shared, 0.2},
         [&](int slot, int e) {
@@ -333,10 +339,22 @@ bool Nodes::constrain(const WindowLayout& layout, bool same_choices)
     return std::isfinite(sum);
 }
 
-void Nodes::build_basis(int A, bool same_choices)
+void Nodes::build_bases(int slot, int first, int behind, bool same_choices)
 {
-    tables_.bodies.map_twists(X(A), maps_.data() + place(A));
-    pivots_[A] = bases_[A].build(tables_, at(A), X(A), maps(A), rows(), same_choices);
+    RowsInLanes::Workspace& work = lanes_[slot];
+    const int width = in_lanes_->width();
+    for (int A = first; A < behind; A += width) {
+        const int n = std::min(width, behind - A);
+        for (int l = 0; l < n; ++l) in_lanes_->place(l, X(A + l), work);
+        in_lanes_->evaluate(work);
+        for (int l = 0; l < n; ++l) {
+            Patience::ask();
+            double* const map = maps_.data() + place(A + l);
+            tables_.bodies.map_twists(X(A + l), map);
+            pivots_[A + l] = bases_[A + l].build(tables_, at(A + l), X(A + l), map, rows(), same_choices,
+                                                 in_lanes_->at(l, work));
+        }
+    }
 }
 
 /// The change of Phi from the node before, so that angles are followed through several turns.

@@ -2,11 +2,13 @@
 // The configurations of a window's nodes, moved by twists and held to the constraints.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "livens/dynamics/rows/constraint_basis.h"
 #include "livens/solvers/room.h"
 #include "livens/spacetime/elements/window_layout.h"
+#include "livens/spacetime/nodal/rows_in_lanes.h"
 
 namespace livens::inline dynamics_internal {
 struct InstantState;
@@ -111,7 +113,7 @@ public:
 
 private:
     void begin_constraining();
-    void build_basis(int A, bool same_choices);
+    void build_bases(int slot, int first, int behind, bool same_choices);
     auto change_at(int e, int B, double* work) const;
     template <class Change>
     void add_violations(int e, int B, const Change& change, double& sum);
@@ -124,7 +126,10 @@ private:
     std::vector<double> scaled_, phi_;               // violations times the scales of bases, and as they are
     bool has_start_ = false;                         // those of the first node, where its state is known
     std::vector<double> pivots_, moves_;             // moves_: sizes of corrections
-    std::vector<std::vector<double>> work_;          // of each thread: numbers of a twist, a twist
+    std::optional<RowsInLanes> in_lanes_;
+    /// Of each thread: numbers of a twist, a twist; gradients.
+    std::vector<std::vector<double>> work_;
+    std::vector<RowsInLanes::Workspace> lanes_;
     bool near_ = true;
 };
 

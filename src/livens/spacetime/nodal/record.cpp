@@ -5,6 +5,7 @@
 #include "livens/spacetime/nodal/record.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "livens/dynamics/instant/instant.h"
@@ -45,6 +46,15 @@ void Record::for_arrays(Action&& action)
 
 namespace {
 
+/// Zeros up to so many entries: copied, since a loop that writes them takes ten times the instructions.
+template <class T>
+void extend(std::vector<T>& values, std::size_t n)
+{
+    static constexpr std::array<T, (std::size_t{1} << 12) / sizeof(T)> zeros{};
+    while (values.size() < n)
+        values.insert(values.end(), zeros.begin(), zeros.begin() + std::min(n - values.size(), zeros.size()));
+}
+
 /// Room for `n` entries at `first`. A march forwards writes one behind the other and touches its memory as it
 /// goes: much is not written twice, and little is made room for ahead, since arrays may be longer than what
 /// was written; some pages of it are, which are still near when they are written.
@@ -54,7 +64,7 @@ template <class T>
     constexpr std::size_t near = std::size_t{1} << 14;   // bytes
     const std::size_t few = 8 * n, ahead = std::max(2 * first, first + few);
     if (values.capacity() < first + n) values.reserve(ahead);
-    values.resize(std::min({ahead, first + std::max(few, near / sizeof(T)), values.capacity()}));
+    extend(values, std::min({ahead, first + std::max(few, near / sizeof(T)), values.capacity()}));
 }
 
 void put(std::vector<double>& values, int place, std::size_t n, const double* from)

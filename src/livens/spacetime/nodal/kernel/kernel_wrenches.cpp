@@ -17,7 +17,7 @@ KernelWrenches::KernelWrenches(const ModelTables& tables, const ElementRule& rul
       taken_(6 * tables.bodies.size())
 {
     if (functions == nullptr || tables.model->loads().empty()) return;
-    loads_.emplace(tables, functions->loads, functions->width, rule.degree);
+    loads_.emplace(tables, functions->loads->run, functions->width, rule.degree);
     if (loads_->has_others())
         others_.assign(totals_.size() * static_cast<std::size_t>(functions->width), 0.0);
 }
@@ -32,14 +32,14 @@ void KernelWrenches::evaluate_loads(const WindowLayout& layout, const lanes::Pat
                                     const lanes::Rule& rule)
 {
     const lanes::LoadProgram program = loads_->view();
-    functions_->interpolate_arms(program, start.numbers, nodes.increments, rule.M, rule.dM);
+    functions_->loads->interpolate_arms(program, start.numbers, nodes.increments, rule.M, rule.dM);
     loads_->run_steps(layout.angles);
-    functions_->share_out(program, rule.load_weights, rule.M_rows, nodes.at_loads.F);
+    functions_->loads->share_out(program, rule.load_weights, rule.M_rows, nodes.at_loads.F);
     if (!loads_->has_others()) return;
     functions_->interpolate(pattern, start, nodes, rule);
     loads_->evaluate_others(nodes.at_loads.X, nodes.at_loads.V, rule.load_weights, layout.angles,
                             others_.data());
-    functions_->share_columns(program, others_.data(), rule.M_rows, nodes.at_loads.F);
+    functions_->loads->share_columns(program, others_.data(), rule.M_rows, nodes.at_loads.F);
 }
 
 /// About the centre of mass, sum_A X_A x F_A over all nodes: rows have all shares F_A but one, which is what
