@@ -38,8 +38,8 @@ livens_mutant(NAME torque_half
 # The mixed term of d2 Phi/dt2 counted once instead of twice: wrong reactions, right motion.
 livens_mutant(NAME curvature_mixed_term
               FILE multibody/constraint.cpp
-              OLD [[2 * dot(V_i * f.c_ij, V_j)]]
-              NEW [[dot(V_i * f.c_ij, V_j)]]
+              OLD [[2 * product(V_i, f.c_ij, V_j)]]
+              NEW [[product(V_i, f.c_ij, V_j)]]
               TESTS_OF unit_multibody
               MUST_FAIL ConstraintRow.GradientAndCurvatureAreThoseOfAQuadraticForm)
 
