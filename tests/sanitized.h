@@ -18,4 +18,7 @@ constexpr bool is_sanitized = true;
 constexpr bool is_sanitized = false;
 #endif
 
+/// What a test says that is left to the release build: a study of many whole motions.
+constexpr const char* study = "a study of whole motions, which the release build has";
+
 }   // namespace livens

@@ -209,6 +209,17 @@ void weigh(const Verdict& v, const SolveReport& report, bool holds_weakly, bool 
 
 }   // namespace
 
+Measured::Measured(const Model& model, const Motion& motion)
+    : version_(model.version()), numbers_(motion.X.values.data()), n_(motion.X.values.size())
+{
+    measure(figures_, model, motion, motion.constraints_hold == ConstraintsHold::weakly);
+}
+
+bool Measured::is_of(const Model& model, const Motion& motion) const
+{
+    return version_ == model.version() && numbers_ == motion.X.values.data() && n_ == motion.X.values.size();
+}
+
 Verdict measure_part(const Model& model, const Motion& part)
 {
     Verdict v;
@@ -224,12 +235,12 @@ void weigh_weak(Verdict& verdict, const SolveReport& report)
 
 Verdict judge(const Model& model, const Motion& motion, const SolveReport& report,
               const ErrorEstimate& estimate, std::span<const double> growth, const Growing& part,
-              std::span<const double> rounding, const Growing& rounding_in)
+              std::span<const double> rounding, const Growing& rounding_in, const Measured* measured)
 {
-    Verdict v;
-    if (motion.n_elements() == 0) return v;   // nothing was solved, so there is nothing to judge
+    if (motion.n_elements() == 0) return {};   // nothing was solved, so there is nothing to judge
     const bool holds_weakly = motion.constraints_hold == ConstraintsHold::weakly;
-    measure(v, model, motion, holds_weakly);
+    Verdict v = measured != nullptr && measured->is_of(model, motion) ? measured->figures()
+                                                                      : Measured(model, motion).figures();
     if (report.smallest_pivot < doubtful_pivot)
         v.remarks.push_back("the constraints nearly lost rank (smallest pivot " +
                             to_text(report.smallest_pivot, 3) +

@@ -2,6 +2,7 @@
 // Whether a motion that a solver calls converged may be believed: bounds on figures of the motion itself.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <span>
@@ -74,6 +75,21 @@ struct Verdict : InvariantFigures, ResolutionFigures, ErrorFigures {
     ViolationReport violations;   ///< means only where constraints hold weakly, nothing between nodes
 };
 
+/// What judge() measures of a motion alone, for whoever judges it twice.
+class Measured {
+public:
+    Measured(const Model& model, const Motion& motion);
+    /// Whether it is what was measured, and nobody has written to it or solved it anew.
+    bool is_of(const Model& model, const Motion& motion) const;
+    const Verdict& figures() const { return figures_; }
+
+private:
+    std::uint64_t version_;
+    const double* numbers_;
+    std::size_t n_;
+    Verdict figures_;
+};
+
 /// Figures of one of several parts of a motion by itself, with all its series: parts are joined by who has
 /// them.
 Verdict measure_part(const Model& model, const Motion& part);
@@ -91,9 +107,10 @@ void weigh_weak(Verdict& verdict, const SolveReport& report);
 ///   length from the march it was guessed by, if it was; the relative drift of energy, linear or angular
 ///   momentum > 0.05; an estimated error > 1e-2 (or the accuracy asked for); a second solution that failed;
 /// or if one of these figures is not a number.
+/// `measured`: serves if it is of this motion.
 Verdict judge(const Model& model, const Motion& motion, const SolveReport& report,
               const ErrorEstimate& estimate = {}, std::span<const double> growth = {},
               const Growing& part = {}, std::span<const double> rounding = {},
-              const Growing& rounding_in = {});
+              const Growing& rounding_in = {}, const Measured* measured = nullptr);
 
 }   // namespace gnu::visibility("default")]]livens

@@ -47,20 +47,25 @@ struct Decided {
     std::shared_ptr<const Model> decided{};
 };
 
-struct Solution : Decided {
-    Motion motion;        ///< up to the last good element end
-    Method method;        ///< that was taken: a degree that was left open is chosen
-    SolveReport report;   ///< `suspect` if the verdict has reasons; the first of them is its message
-    Verdict verdict{};
-    ErrorEstimate estimate{};
+/// How errors grow along the motion.
+struct GrowthOfErrors {
     /// By how much a perturbation of the start has grown, at element ends, in lengths and rad by lengths and
     /// rad at the start; empty if nobody asked, as far as the neighbouring motion came if it failed.
     std::vector<double> growth{};
     /// What the rounding of numbers, at the start and on the way, has grown to, in lengths and rad, at
     /// element ends; empty where 2^-53 of the growth tells enough.
     std::vector<double> rounding{};
-    Growing growing{};              ///< what of it grows most, up to the horizon or the end
-    Growing rounding_in{};          ///< likewise of `rounding`
+    Growing growing{};       ///< what of it grows most, up to the horizon or the end
+    Growing rounding_in{};   ///< likewise of `rounding`
+};
+
+struct Solution : Decided, GrowthOfErrors {
+    Motion motion;        ///< up to the last good element end
+    Method method;        ///< that was taken: a degree that was left open is chosen
+    SolveReport report;   ///< `suspect` if the verdict has reasons; the first of them is its message
+    Verdict verdict{};
+    std::shared_ptr<const Measured> measured{};   ///< where its figures were asked for on the way
+    ErrorEstimate estimate{};
     std::vector<Unseen> unseen{};   ///< what laws of loads did inside of elements, see Unseen
     double estimate_seconds = 0;    ///< that the second solution and the neighbouring motion took
     /// Why the motion has no beginning, where that is a matter of the motion before it, or an unknown number
@@ -152,4 +157,4 @@ private:
     std::shared_ptr<const WithRotors> rotors_;   // null: there are none
 };
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens

@@ -9,6 +9,7 @@
 
 #include "livens/diagnostics/sample.h"
 #include "livens/io/solve_scenario.h"
+#include "sanitized.h"
 #include "unit/io/scenario_text.h"
 
 namespace livens::mixed_components_test {
@@ -116,6 +117,7 @@ const Case cases[] = {
 
 TEST(MixedComponents, ConvergeToTheMotionThatTheConditionsHave)
 {
+    if (is_sanitized) GTEST_SKIP() << study;
     for (const Case& one : cases) {
         SCOPED_TRACE(one.what);
         const Solution truth = solution_of(one.text + in_time(one.end, 20, fine));
@@ -195,6 +197,7 @@ TEST(MixedComponents, PeriodicMotionsOfForces)
 /// A damper, and how long it takes, by conditions that lobatto meets, too.
 TEST(MixedComponents, UnknownNumbersConvergeToThoseOfLobatto)
 {
+    if (is_sanitized) GTEST_SKIP() << study;
     const std::string
         start = "[start]\nknown = { \"j1.angle\" = 0.1, \"j2.angle\" = -0.2, \"j2.angle_rate\" = 0.5, "
                 "\"j1.angle_rate\" = 0 }\n",

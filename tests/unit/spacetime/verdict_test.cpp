@@ -49,6 +49,25 @@ TEST(Verdict, OfAGoodRunHasFiguresAndNoReason)
     }
 }
 
+TEST(Verdict, TakesFiguresThatWereMeasuredOnTheWayOfThatMotionAlone)
+{
+    const Model model = pendulum(1);
+    const Solution s = solved(model, Lobatto{4}, 1, 50), coarse = solved(model, Lobatto{4}, 1, 5);
+    const auto judged = [](const Model& of, const Solution& solution, const Measured* measured) {
+        return judge(of, solution.motion, solution.report, {}, {}, {}, {}, {}, measured);
+    };
+    const Measured own(model, s.motion), other(model, coarse.motion);
+    ASSERT_NE(s.verdict.energy_drift, coarse.verdict.energy_drift);
+    EXPECT_TRUE(own.is_of(model, s.motion));
+    EXPECT_EQ(judged(model, s, &own).energy_drift, s.verdict.energy_drift);
+    EXPECT_EQ(judged(model, s, &other).energy_drift, s.verdict.energy_drift);
+    Model changed = model;
+    changed.add_load(point_force("push", 0, {}, {1, 0, 0}, Frame::inertial));
+    const Solution copy = s;
+    EXPECT_FALSE(own.is_of(changed, s.motion)) << "another model";
+    EXPECT_FALSE(own.is_of(model, copy.motion)) << "another motion, which may have been written to";
+}
+
 TEST(Verdict, OfASwingWhoseElementsEndAtRestHasNoReason)
 {
     // from turning point to turning point of a pendulum let go from the horizontal: nothing moves at the ends

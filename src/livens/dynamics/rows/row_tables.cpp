@@ -136,7 +136,7 @@ double RowTables::value(int r, Instant at, const double* X, const double* g) con
 double RowTables::value(int r, Instant at, const double* X) const
 {
     double g[gradient_size];
-    gradient(r, at, X, g);
+    if (tables_[r].is_quadratic) gradient(r, at, X, g);   // others do not look at it
     return value(r, at, X, g);
 }
 

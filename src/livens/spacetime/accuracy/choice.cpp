@@ -2,6 +2,7 @@
 // The family that suits a mechanism: lobatto, or radau where it is stiff.  (docs/theory.md, "Stiffness")
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -111,12 +112,14 @@ private:
         why_ = "radau was taken: " + who.where(model_) + " " + what;
     }
 
-    bool is_good(const Solution& solution) const
+    bool is_good(Solution& solution) const
     {
         constexpr double doubtful =
             0.01;   // of the energy: vibrations that lobatto does not follow take or give it
         if (!solution.report.converged()) return false;
-        const Verdict verdict = judge(model_, solution.motion, solution.report, solution.estimate, {});
+        solution.measured = std::make_shared<Measured>(model_, solution.motion);
+        const Verdict verdict = judge(model_, solution.motion, solution.report, solution.estimate, {}, {}, {},
+                                      {}, solution.measured.get());
         return verdict.reasons.empty() && !(verdict.energy_drift > doubtful);
     }
 

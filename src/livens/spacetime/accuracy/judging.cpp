@@ -156,7 +156,8 @@ void judge(const Model& model, const Problem& problem, const SolveOptions& optio
     try {
         const Patience patience(goes_on, grace);
         solution.verdict = judge(model, solution.motion, report, solution.estimate, solution.growth,
-                                 solution.growing, solution.rounding, solution.rounding_in);
+                                 solution.growing, solution.rounding, solution.rounding_in,
+                                 solution.measured.get());
         judge_beside(model, problem, options, solution);
     } catch (const Stopped&) {
         return give_up(SolveStatus::cancelled, "stopped as asked");
