@@ -338,7 +338,7 @@ Solution solve_by_steps(const Model& model, const Problem& problem, const TimeMe
         std::holds_alternative<Midpoint>(method) ? SteppingRule::midpoint : SteppingRule::endpoint;
     SteppingResult result = march_stepping(model, start, mesh, rule,
                                            {options.tolerance, options.max_iterations, options.progress});
-    return {{}, std::move(result.motion), method, std::move(result.report)};
+    return {{}, {}, std::move(result.motion), method, std::move(result.report)};
 }
 
 }   // namespace

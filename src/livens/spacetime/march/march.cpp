@@ -103,13 +103,10 @@ bool March::advance(const Elements& of)
     const bool is_solved = outcome.status == SolveStatus::converged;
     if (!is_solved && of.size() > 1) return split(of, outcome);
     if (is_solved && ends_at_bend(of)) return true;
-    AcceptedElements closed{0, true, unseen};
-    if (is_solved) {
-        if (attempt_.is_march) compare(of);
-        closed = close(of);
-    } else if (partition().may_shorten(of) && may_help(outcome, window_)) {
+    if (is_solved && attempt_.is_march) compare(of);
+    AcceptedElements closed = is_solved ? close(of) : AcceptedElements{0, true, unseen};
+    if (!is_solved && partition().may_shorten(of) && may_help(outcome, window_))
         closed.loss = loss_of_failed(of);
-    }
     if (of.size() == 1 && closed.loss != RankLoss::none) {
         move_off(of, closed.loss);
         return true;
