@@ -47,17 +47,24 @@ void check_interval(double start, double end, int n_elements)
 std::vector<double> fixed_ends(double start, double end, std::span<const double> required)
 {
     const double gap = nearest_ends * (end - start);
-    std::set<double> fixed{start, end};
-    for (const double t : required) {
-        if (!std::isfinite(t)) {
+    for (const double t : required)
+        if (!std::isfinite(t))
             throw InputError({"time-output", "time.output",
                               "an instant that must be an element end is not finite", to_text(t), "finite",
                               "", ""});
-        }
+    // Two instants that differ by rounding would leave an element of no length between them. The first one
+    // that was stated stays; start and end are there before all others.
+    if (std::ranges::is_sorted(required)) {   // nearly always: no tree is needed
+        std::vector<double> fixed{start};
+        for (const double t : required)
+            if (t - fixed.back() >= gap && end - t >= gap) fixed.push_back(t);
+        fixed.push_back(end);
+        return fixed;
+    }
+    std::set<double> fixed{start, end};
+    for (const double t : required) {
         if (t < start || t > end) continue;
         const auto after = fixed.lower_bound(t);   // exists, since t <= end
-        // Two instants that differ by rounding would leave an element of no length between them. The first
-        // one that was stated stays; start and end are there before all others.
         const bool close_after = *after - t < gap;
         const bool close_before = after != fixed.begin() && t - *std::prev(after) < gap;
         if (!close_after && !close_before) fixed.insert(after, t);

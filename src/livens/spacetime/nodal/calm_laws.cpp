@@ -72,19 +72,17 @@ bool CalmLaws::is_centre_calm(const LoadLanes& loads, int load) const
 {
     const std::vector<int>& places = loads.program().tape().watched()[load].centre;
     if (places.empty()) return false;
-    const auto at = [&](std::size_t c) {
-        Vector3 centre{};
-        for (int i = 0; i < 3; ++i) centre[i] = loads.number(places[static_cast<std::size_t>(i)])[c];
-        return centre;
-    };
+    const double* numbers[3];
+    for (std::size_t i = 0; i < 3; ++i) numbers[i] = loads.number(places[i]);
+    const auto at = [&](std::size_t c) { return Vector3{numbers[0][c], numbers[1][c], numbers[2][c]}; };
     Vector3 before = at(0);
-    double nearest = norm(before), speed = 0;
+    double nearest = dot(before, before), speed = 0;   // squares
     for (std::size_t c = 1; c < shares_.size(); ++c) {
-        const Vector3 now = at(c);
-        const double distance = norm(now);
+        const Vector3 now = at(c), moved = now - before;
+        const double distance = dot(now, now), gap = shares_[c] - shares_[c - 1];
         if (std::isnan(distance)) return false;
         nearest = std::min(nearest, distance);
-        speed = std::max(speed, norm(now - before) / (shares_[c] - shares_[c - 1]));
+        speed = std::max(speed, dot(moved, moved) / (gap * gap));
         before = now;
     }
     return nearest > speed;

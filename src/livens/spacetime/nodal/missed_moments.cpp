@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <utility>
 
 #include "livens/spacetime/nodal/law_on_path.h"
@@ -132,28 +134,40 @@ void divide(LawOnPath& path, const CheckedRule& rule, std::vector<Panel>& panels
     }
 }
 
-}   // namespace
-
-CheckedRule::CheckedRule(int n_points) : gauss(livens::gauss(n_points))
+CheckedRule made_rule(int n_points)
 {
-    const std::size_t n = gauss.points.size(), left_out = 1 + n / 2;
+    CheckedRule rule{gauss(n_points), {}};
+    const std::size_t n = rule.gauss.points.size(), left_out = 1 + n / 2;
     std::vector<double> nodes{0};
-    nodes.insert(nodes.end(), gauss.points.begin(), gauss.points.end());
+    nodes.insert(nodes.end(), rule.gauss.points.begin(), rule.gauss.points.end());
     nodes.push_back(1);
     nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(left_out));
     const LagrangeBasis basis(nodes);
-    std::vector<double> weights(n + 1, 0.0), values(n + 1);
+    std::vector<double> values(n + 1);
+    rule.check.assign(n + 1, 0.0);
     for (std::size_t i = 0; i < n; ++i) {
-        basis.values(gauss.points[i], values);
-        for (std::size_t k = 0; k <= n; ++k) weights[k] += gauss.weights[i] * values[k];
+        basis.values(rule.gauss.points[i], values);
+        for (std::size_t k = 0; k <= n; ++k) rule.check[k] += rule.gauss.weights[i] * values[k];
     }
-    weights.insert(weights.begin() + static_cast<std::ptrdiff_t>(left_out), 0.0);
-    check = std::move(weights);
+    rule.check.insert(rule.check.begin() + static_cast<std::ptrdiff_t>(left_out), 0.0);
+    return rule;
 }
 
+/// Made once, as element_rule() is, where a law is not calm.
+const CheckedRule& checked_rule(int n_points)
+{
+    static std::mutex in_use;
+    static auto& known = *new std::map<int, CheckedRule>;
+    const std::scoped_lock lock(in_use);
+    const auto [place, is_new] = known.try_emplace(n_points);
+    if (is_new || place->second.check.empty()) place->second = made_rule(n_points);
+    return place->second;
+}
+
+}   // namespace
+
 MissedMoments::MissedMoments(const ElementRule& rule)
-    : rule_(rule), fine_(static_cast<int>(rule.loads.points.size()) + more_points), some_(points_of_piece),
-      few_(2)
+    : rule_(rule), fine_(checked_rule(static_cast<int>(rule.loads.points.size()) + more_points))
 {}
 
 std::vector<double> MissedMoments::shares() const
@@ -172,13 +186,13 @@ std::vector<double> MissedMoments::of(LawOnPath& path, const LooksInLanes* looks
         panels.resize(1);
         integrate(path, fine_, panels[0], looks);
         if (panels[0].doubt > 0) looks = nullptr;   // pieces are by the numbers between its looks
-        divide(path, some_, panels);
+        divide(path, checked_rule(points_of_piece), panels);
     } else {
         const double ends[] = {
             0, beside_moments[0], beside_moments[1], 1 - beside_moments[1], 1 - beside_moments[0], 1};
         for (std::size_t i = 0; i + 1 < std::size(ends); ++i) {
             panels.push_back({ends[i], ends[i + 1], 0, {}});
-            integrate(path, i == 2 ? fine_ : few_, panels.back());
+            integrate(path, i == 2 ? fine_ : checked_rule(2), panels.back());
         }
     }
     std::vector<double> moments(n_moments * m, 0.0), factors(m), size(m, 0.0);

@@ -16,8 +16,6 @@ class LooksInLanes;
 struct CheckedRule {
     Quadrature gauss;
     std::vector<double> check;
-
-    explicit CheckedRule(int n_points);
 };
 
 /// The moments D_kn = integral of P_n f_k over the element less their quadrature, with Legendre's polynomials
@@ -38,7 +36,7 @@ public:
 
 private:
     const ElementRule& rule_;
-    CheckedRule fine_, some_, few_;   // of the whole way, of its pieces, and of those beside its ends
+    const CheckedRule& fine_;   // of the whole way
 };
 
 }   // namespace livens::inline spacetime_internal
