@@ -1072,8 +1072,8 @@ livens_mutant(NAME products_added
 # The last node has no share of the loads.
 livens_mutant(NAME last_node_unloaded
               FILE spacetime/nodal/kernel/kernel_wrenches.cpp
-              OLD [[        add_moments(numbers, W, left, 1);]]
-              NEW [[        add_moments(numbers, W, F, W);]]
+              OLD [[        add(numbers, W, left, 1);]]
+              NEW [[        add(numbers, W, F, W);]]
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.AgreesWithNewtonOnRandomMechanisms)
 

@@ -48,32 +48,33 @@ void KernelWrenches::add_loads(int b, const InstantState& start, const lanes::Va
 {
     const int W = functions_->width, p = rule_.degree;
     const bool is_radau = rule_.points == Points::radau;
-    const double *total = totals_.data() + 12 * b, *X_0 = start.X.data() + 12 * b;
-    double left[12];   // of directors, at the end that is no row
-    std::copy_n(total, 12, left);
-    for (int i = 0; i < 3; ++i) wrench[i] += total[i];
-    // d_a x f_a of numbers that far apart
-    const auto add_moments = [&](const double* d, int to_next_d, const double* f, int to_next_f) {
+    const double* X_0 = start.X.data() + 12 * b;
+    double left[12];   // at the end that is no row
+    std::copy_n(totals_.data() + 12 * b, 12, left);
+    // f_0 and sum d_a x f_a of numbers that far apart
+    const auto add = [&](const double* d, int to_next_d, const double* f, int to_next_f) {
+        double moment[3] = {};
         for (int a = 3; a < 12; a += 3) {
             const double x = d[a * to_next_d], y = d[(a + 1) * to_next_d], z = d[(a + 2) * to_next_d];
             const double u = f[a * to_next_f], v = f[(a + 1) * to_next_f], w = f[(a + 2) * to_next_f];
-            wrench[3] += y * w - z * v;
-            wrench[4] += z * u - x * w;
-            wrench[5] += x * v - y * u;
+            moment[0] += y * w - z * v;
+            moment[1] += z * u - x * w;
+            moment[2] += x * v - y * u;
         }
+        for (int i = 0; i < 3; ++i) wrench[i] += f[i * to_next_f], wrench[3 + i] += moment[i];
     };
     const double *numbers = nodes.numbers + 12 * b * W, *F = nodes.at_loads.F + 12 * b * W;
     for (int l = 0; l < p; ++l) {
-        for (int i = 3; i < 12; ++i) left[i] -= F[i * W + l];
+        for (int i = 0; i < 12; ++i) left[i] -= F[i * W + l];
         if (l == 0 && !is_radau)
-            add_moments(X_0, 1, F, W);
+            add(X_0, 1, F, W);
         else
-            add_moments(numbers + l, W, F + l, W);
+            add(numbers + l, W, F + l, W);
     }
     if (is_radau)
-        add_moments(X_0, 1, left, 1);
+        add(X_0, 1, left, 1);
     else
-        add_moments(numbers, W, left, 1);
+        add(numbers, W, left, 1);
 }
 
 void KernelWrenches::momentum(const WindowLayout& layout, const InstantState& start,
