@@ -167,13 +167,13 @@ const CheckedRule& checked_rule(int n_points)
 }   // namespace
 
 MissedMoments::MissedMoments(const ElementRule& rule)
-    : rule_(rule), fine_(checked_rule(static_cast<int>(rule.loads.points.size()) + more_points))
+    : rule_(rule), n_fine_(static_cast<int>(rule.loads.points.size()) + more_points)
 {}
 
 std::vector<double> MissedMoments::shares() const
 {
-    std::vector<double> shares{0};
-    shares.insert(shares.end(), fine_.gauss.points.begin(), fine_.gauss.points.end());
+    std::vector<double> shares = gauss(n_fine_).points;
+    shares.insert(shares.begin(), 0);
     shares.push_back(1);
     return shares;
 }
@@ -181,10 +181,11 @@ std::vector<double> MissedMoments::shares() const
 std::vector<double> MissedMoments::of(LawOnPath& path, const LooksInLanes* looks) const
 {
     const std::size_t m = path.n_factors();
+    const CheckedRule& fine = checked_rule(n_fine_);
     std::vector<Panel> panels;
     if (path.law().inside.steepest) {
         panels.resize(1);
-        integrate(path, fine_, panels[0], looks);
+        integrate(path, fine, panels[0], looks);
         if (panels[0].doubt > 0) looks = nullptr;   // pieces are by the numbers between its looks
         divide(path, checked_rule(points_of_piece), panels);
     } else {
@@ -192,7 +193,7 @@ std::vector<double> MissedMoments::of(LawOnPath& path, const LooksInLanes* looks
             0, beside_moments[0], beside_moments[1], 1 - beside_moments[1], 1 - beside_moments[0], 1};
         for (std::size_t i = 0; i + 1 < std::size(ends); ++i) {
             panels.push_back({ends[i], ends[i + 1], 0, {}});
-            integrate(path, i == 2 ? fine_ : checked_rule(2), panels.back());
+            integrate(path, i == 2 ? fine : checked_rule(2), panels.back());
         }
     }
     std::vector<double> moments(n_moments * m, 0.0), factors(m), size(m, 0.0);

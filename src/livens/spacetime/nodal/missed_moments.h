@@ -36,7 +36,7 @@ public:
 
 private:
     const ElementRule& rule_;
-    const CheckedRule& fine_;   // of the whole way
+    int n_fine_;   // points on the whole way
 };
 
 }   // namespace livens::inline spacetime_internal
