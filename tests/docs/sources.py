@@ -57,7 +57,7 @@ TIES = [
     ("at most $«30»/n$ of it", f"{TIME}/march/step_size_controller.cpp", r"far_too_many = (\d+)"),
     ("of stated elements «500»", f"{TIME}/march/march.cpp", r"too_costly = (\d+);"),
     ("(violation below «1e-9» of their scale)", f"{DYNAMICS}/instant/instant.cpp", r"first_violated_beside\([^;]*, ([\de-]+)\)"),
-    ("level: «1e-16» times", f"{NODAL}/nodes.cpp", r"rounding = ([^;]+);"),
+    ("level: «1e-16» times", f"{NODAL}/node_violations.cpp", r"rounding = ([^;]+);"),
     ("so that below «1e-3» it is done four times", f"{DYNAMICS}/lanes/joint_factor.cpp", r"pivot > (\S+) \? 2 : 4"),
     ("and below «1e-5» an instant is solved with", f"{DYNAMICS}/lanes/joint_factor.h", r"well_held = ([^;]+);"),
     ("below a tenth of the tolerance, or when steps that have shrunk stop doing so below it, or below $«10^{-14}»$ of the motion",

@@ -171,7 +171,7 @@ livens_mutant(NAME any_start_is_the_last
 
 # Angles followed from node to node by increments since the first node of the element.
 livens_mutant(NAME turns_of_an_element
-              FILE spacetime/nodal/nodes.cpp
+              FILE spacetime/nodal/node_violations.cpp
               OLD [[work[i] = B > 1 ? step[i] - dX(e, B - 1)[i] : step[i];]]
               NEW [[work[i] = step[i];]]
               TESTS_OF convergence
@@ -1976,7 +1976,7 @@ livens_mutant(NAME elements_of_one_thread_alone
 
 # Violations that add up along nodes are taken where threads find their changes.
 livens_mutant(NAME violations_before_those_of_the_nodes_before
-              FILE spacetime/nodal/nodes.cpp
+              FILE spacetime/nodal/node_violations.cpp
               OLD [[if (!Crew::divides(n, least_shared)) {]]
               NEW [[if (Crew::divides(n, least_shared)) return std::isfinite(sum); else {]]
               TESTS_OF unit_spacetime

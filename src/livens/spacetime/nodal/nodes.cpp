@@ -258,87 +258,6 @@ void Nodes::begin_constraining()
     for (int c = 0; c < tables_.rank; ++c) phi_[c] = tables_.rows.value((*first_rows_)[c], at(0), X(0));
 }
 
-/// Of Phi in row c, from the element's first node, which keeps the digits of a small increment; Phi itself at
-/// the first node of all.
-auto Nodes::change_at(int e, int B, double* work) const
-{
-    const ConstraintBasis &first = basis(e * rule_.degree), &own = bases_[e * rule_.degree + B];
-    return [this, e, B, work, &first, &own, step = dX(e, B)](int c, int row, bool is_quadratic) {
-        const int A = e * rule_.degree + B;
-        return B == 0         ? tables_.rows.value(row, at(A), X(A), own.gradient(c))
-               : is_quadratic ? tables_.rows.change(row, first.gradient(c), own.gradient(c), step)
-                              : followed(e, B, c, work);
-    };
-}
-
-template <class Change>
-void Nodes::add_violations(int e, int B, const Change& change, double& sum)
-{
-    constexpr double rounding = 1e-16;   // of Phi at the start itself: nothing to correct
-    constexpr double close = 1e-4;       // relative, for one linear step onto the constraints
-    const int A = e * rule_.degree + B, k = tables_.rank, before = B > 0 ? -k : 0, first = -B * k;
-    const int* row = bases_[A].rows.data();
-    double *violations = phi_.data() + A * k, *scaled = scaled_.data() + A * k;
-    for (int c = 0; c < k; ++c) {
-        const auto& table = tables_.rows[row[c]];
-        const bool is_quadratic = table.is_quadratic;
-        double phi = change(c, row[c], is_quadratic);
-        const double scale = table.row->scale;
-        if (B > 0) phi = violations[c + (is_quadratic ? first : before)] + phi;
-        if (std::abs(phi) < rounding * scale) phi = 0;
-        if (!(std::abs(phi) <= close * scale)) near_ = false;
-        violations[c] = phi;
-        scaled[c] = phi * bases_[A].row_scale(c);
-        sum += std::abs(phi);
-    }
-}
-
-/// Bases come first, of as many nodes at a time as there are lanes, and violations last, which add up along
-/// the nodes.
-bool Nodes::constrain(const WindowLayout& layout, bool same_choices)
-{
-    near_ = true;
-    begin_constraining();
-    const int n = layout.n_elements(), degree = rule_.degree;
-    in_shares(n, least_shared, [&](int slot, int begin, int end) {
-        for (int e = begin; e < end; ++e) {
-            Patience::ask();
-            take_differences(e);
-        }
-        const int first = begin == 0 && layout.is_unknown(0) ? 0 : begin * degree + 1, last = end * degree;
-        build_bases(slot, first, layout.is_unknown(last) ? last + 1 : last, same_choices);
-    });
-    const auto for_nodes = [&](int e, const auto& act) {
-        const int last = layout.is_unknown((e + 1) * degree) ? degree : degree - 1;
-        for (int B = e == 0 && layout.is_unknown(0) ? 0 : 1; B <= last; ++B) act(B);
-    };
-    double sum = 0;
-    if (!Crew::divides(n, least_shared)) {
-        for (int e = 0; e < n; ++e)
-            for_nodes(e, [&](int B) { add_violations(e, B, change_at(e, B, work_[0].data()), sum); });
-        return std::isfinite(sum);
-    }
-    in_order_behind(
-        {n, least_shared, 0.2},
-        [&](int slot, int e) {
-            for_nodes(e, [&](int B) {
-                const auto change = change_at(e, B, work_[slot].data());
-                double* changes = phi_.data() + (e * degree + B) * tables_.rank;
-                const int* row = bases_[e * degree + B].rows.data();
-                for (int c = 0; c < tables_.rank; ++c)
-                    changes[c] = change(c, row[c], tables_.rows[row[c]].is_quadratic);
-            });
-        },
-        [&](int e) {
-            for_nodes(e, [&](int B) {
-                const double* changes = phi_.data() + (e * degree + B) * tables_.rank;
-                add_violations(e, B, [changes](int c, int, bool) { return changes[c]; }, sum);
-            });
-            return true;
-        });
-    return std::isfinite(sum);
-}
-
 void Nodes::build_bases(int slot, int first, int behind, bool same_choices)
 {
     RowsInLanes::Workspace& work = lanes_[slot];
@@ -355,17 +274,6 @@ void Nodes::build_bases(int slot, int first, int behind, bool same_choices)
                                                  in_lanes_->at(l, work));
         }
     }
-}
-
-/// The change of Phi from the node before, so that angles are followed through several turns.
-double Nodes::followed(int e, int B, int c, double* work) const
-{
-    const int A = e * rule_.degree + B;
-    const ConstraintRow& row = *tables_.rows[bases_[A].rows[c]].row;
-    const double* step = dX(e, B);
-    for (std::size_t i = 0; i < size_; ++i) work[i] = B > 1 ? step[i] - dX(e, B - 1)[i] : step[i];
-    return constraint_change(row, at(A - 1), Configurations(X(A - 1)), at(A), Configurations(X(A)),
-                             Configurations(work));
 }
 
 double Nodes::correct(const WindowLayout& layout)

@@ -117,6 +117,8 @@ private:
     auto change_at(int e, int B, double* work) const;
     template <class Change>
     void add_violations(int e, int B, const Change& change, double& sum);
+    bool add_up_in_shares(const WindowLayout& layout);
+    void look_at(int A, double& sum, bool& is_near);
     double followed(int e, int B, int c, double* work) const;
 
     Room maps_;
