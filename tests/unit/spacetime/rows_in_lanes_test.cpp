@@ -87,7 +87,7 @@ TEST(RowsInLanes, AreThoseOfOneNode)
                 EXPECT_LT(largest_difference(bench, 0), 1e-13) << seed << ' ' << n;
                 n_known += bench.n_known;
             }
-        EXPECT_GT(n_known, 2000);
+        EXPECT_GT(n_known, 1000);   // compilers draw random mechanisms in orders of their own
     });
 }
 
