@@ -120,7 +120,7 @@ TIES = [
     ("unless one of its ends is larger by «8», which", "src/livens/solvers/panel.cpp", r"preferred = (\d+);"),
     ("and beyond «64» that one is done", "src/livens/solvers/chain.cpp", r"most_growth = (\d+);"),
     ("Pivots below $«10^{-10}»$ of their column", "src/livens/solvers/stretch.cpp", r"least_pivot = ([^;]+);"),
-    ("which leaves out what is below $«10^{-10}»$ of the largest pivot", "src/livens/solvers/rank_borders.cpp",
+    ("which leaves out what is below $«10^{-10}»$ of the largest pivot", "src/livens/solvers/ranks/rank_borders.cpp",
      r"left_out = ([^;]+);"),
     ("is divided, at «0.4» of its length", f"{TIME}/march/partition.cpp", r"uneven = ([^;]+);"),
     ("(Tests hold a parallelogram to $«10^{-12}»$", "tests/convergence/singular.cpp", r"turn\), degree == 3 \? 1e-9 : ([^)]+)\)"),

@@ -38,7 +38,9 @@ APART = {("diagnostics", "stepping")}
 PARTS = {
     "multibody": ["joints", "loads"],
     "dynamics": ["rows", "lanes", "instant", "start", "coordinates"],
+    "solvers": ["ranks"],
     "spacetime": ["march", "elements", "nodal", "mixed", "accuracy"],
+    "spacetime/nodal": ["kernel", "condensed", "laws"],
     "io": ["results", "exports", "report", "scenario", "import"],
     "io/scenario": ["text", "schema", "bodies", "joints", "loads", "events", "run"],
 }

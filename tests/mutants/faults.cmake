@@ -88,7 +88,7 @@ livens_mutant(NAME missing_geometric_term_by_differences
 
 # Loads taken where the element starts, their moments where it has come to: a spring that turns what it holds.
 livens_mutant(NAME loads_at_the_start
-              FILE spacetime/nodal/element_loads.cpp
+              FILE spacetime/nodal/laws/element_loads.cpp
               OLD [[X[l] += M_[B * W + l] * dX;]]
               NEW [[X[l] += 0 * M_[B * W + l] * dX;]]
               TESTS_OF unit_spacetime
@@ -113,7 +113,7 @@ livens_mutant(NAME loads_at_lobatto_points
 
 # What a load does at a Gauss point given to one node, instead of shared out: impulses are right, moments not.
 livens_mutant(NAME loads_given_to_one_node
-              FILE spacetime/nodal/element_loads.cpp
+              FILE spacetime/nodal/laws/element_loads.cpp
               OLD [[forces[i] += rule_.M[c * n_nodes + A] * at.F]]
               NEW [[forces[i] += (A == c ? 1 : 0) * at.F]]
               TESTS_OF unit_spacetime
@@ -122,7 +122,7 @@ livens_mutant(NAME loads_given_to_one_node
 # The instant of a node for what is taken at a Gauss point: right for constant loads only.
 livens_mutant(NAME loads_at_the_instants_of_nodes
               FILE spacetime/elements/window_layout.h
-              RECOMPILE spacetime/nodal/element_loads.cpp spacetime/nodal/kernel/kernel_wrenches.cpp
+              RECOMPILE spacetime/nodal/laws/element_loads.cpp spacetime/nodal/kernel/kernel_wrenches.cpp
               OLD [[rule.loads.points[c] * h(e), Side::middle}]]
               NEW [[rule.nodes[c] * h(e), Side::middle}]]
               TESTS_OF convergence
@@ -634,6 +634,14 @@ livens_mutant(NAME frequency_of_rounding
               TESTS_OF unit_statics
               MUST_FAIL Frequencies.AreNotMadeOfTheRoundingOfLargeLoads)
 
+# A bound of vibrations that leaves half of each term out.
+livens_mutant(NAME vibrations_beyond_their_bound
+              FILE statics/frequencies.cpp
+              OLD [[const double half = 0.5 * norm(t.K);]]
+              NEW [[const double half = 0.25 * norm(t.K);]]
+              TESTS_OF unit_statics
+              MUST_FAIL Frequencies.FromARateOnAreTheFastestOfAll)
+
 # A driven angle as the sine of what it is off: beyond a quarter of a turn that leads away.
 livens_mutant(NAME driven_angle_by_its_sine
               FILE dynamics/rows/reach.cpp
@@ -919,7 +927,7 @@ livens_mutant(NAME directions_are_letters
 
 # Nothing is ever doubted: a needle between two looks is flown through.
 livens_mutant(NAME laws_undoubted
-              FILE spacetime/nodal/missed_moments.cpp
+              FILE spacetime/nodal/laws/missed_moments.cpp
               OLD [[    double doubt = 0;
     for (std::size_t k = 0; k < m; ++k) {
         double steepest = 0, widest = 0;]]
@@ -932,7 +940,7 @@ livens_mutant(NAME laws_undoubted
 
 # What is seen of a law is integrated well, whatever its shape between the places.
 livens_mutant(NAME integrals_unchecked
-              FILE spacetime/nodal/missed_moments.cpp
+              FILE spacetime/nodal/laws/missed_moments.cpp
               OLD [[std::max(steepness_doubt(path, panel, seen), quadrature_doubt(path, rule, panel, seen))]]
               NEW [[std::max(steepness_doubt(path, panel, seen), 0 * quadrature_doubt(path, rule, panel, seen))]]
               TESTS_OF unit_spacetime
@@ -1005,7 +1013,7 @@ livens_mutant(NAME no_witness
 
 # Opaque forces are not looked at beside the ends of elements.
 livens_mutant(NAME ends_of_elements_unseen
-              FILE spacetime/nodal/missed_moments.cpp
+              FILE spacetime/nodal/laws/missed_moments.cpp
               OLD [[constexpr double beside_moments[] = {1e-4, 1e-2};]]
               NEW [[constexpr double beside_moments[] = {1e-15, 1e-14};]]
               TESTS_OF unit_spacetime
@@ -1079,7 +1087,7 @@ livens_mutant(NAME last_node_unloaded
 
 # Nothing is ever near a bend.
 livens_mutant(NAME guards_always_calm
-              FILE spacetime/nodal/calm_laws.cpp
+              FILE spacetime/nodal/laws/calm_laws.cpp
               OLD [[constexpr double gaps_away = 2;]]
               NEW [[constexpr double gaps_away = -1e9;]]
               TESTS_OF reference
@@ -1087,7 +1095,7 @@ livens_mutant(NAME guards_always_calm
 
 # Looks in lanes do not tell the numbers between them, whose enclosures then are points.
 livens_mutant(NAME looks_without_numbers
-              FILE spacetime/nodal/looks_in_lanes.cpp
+              FILE spacetime/nodal/laws/looks_in_lanes.cpp
               OLD [[sum += values[A * size + ]]
               NEW [[sum += 0 * values[A * size + ]]
               TESTS_OF reference
@@ -1934,6 +1942,15 @@ livens_mutant(NAME rows_in_full_registers_alone
               TESTS_OF unit_solvers
               MUST_FAIL RowFunctions.AreSumsOverNumbers)
 
+# Rows of U that are solved together taken for one of no triangle.
+livens_mutant(NAME factors_without_their_triangles
+              FILE solvers/detail/rows_in_registers.h
+              OLD [[for (int l = k + 1; l < 4; ++l) x[i + k] -= d[k * n + l] * x[i + l];]]
+              NEW [[;]]
+              RECOMPILE solvers/rows_sse2.cpp
+              TESTS_OF unit_solvers
+              MUST_FAIL DenseLU.SolvesRandomSystemsOfEverySizeToRounding)
+
 # Conditions alone asked in the rows of the last balances.
 livens_mutant(NAME conditions_before_their_rows
               FILE solvers/chain_solution.cpp
@@ -2089,7 +2106,7 @@ livens_mutant(NAME turns_of_each_rank
 
 # Neighbours take free motions of one another for their own.
 livens_mutant(NAME motions_of_neighbours
-              FILE solvers/rank_ends.cpp
+              FILE solvers/ranks/rank_ends.cpp
               OLD [[is_row ? to[j] += from[i] * value : to[i] += value * from[j];]]
               NEW [[is_row ? to[i] += value * from[j] : to[i] += value * from[j];]]
               TESTS_OF unit_solvers

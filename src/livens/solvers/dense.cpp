@@ -84,12 +84,7 @@ void DenseLU::solve(double* x) const
     for (int k = 0; k < n_; ++k) {
         if (pivot_[k] != k) std::swap(x[k], x[pivot_[k]]);
     }
-    const RowFunctions& rows = row_functions();
-    for (int i = 1; i < n_; ++i) x[i] -= inner(rows, row(i), x, i);
-    for (int i = n_ - 1; i >= 0; --i) {
-        const double* r = row(i);
-        x[i] = (x[i] - inner(rows, r + i + 1, x + i + 1, n_ - i - 1)) / r[i];
-    }
+    row_functions().solve_factors(x, a_.data(), n_);
 }
 
 /// A^T = U^T L^T P, without a column of U or L: their rows are taken off what is left.

@@ -49,6 +49,8 @@ struct RowFunctions {
     /// Rows 1..rows of z, n numbers each, by the reflection 1 - beta [1; v] [1; v]^T with row 0, which is
     /// zero before.
     void (*reflect_rows)(double* z, int n, double beta, const double* v, int rows);
+    /// x <- U^-1 L^-1 x of the factors of n rows, one behind the other; L has ones on its diagonal
+    void (*solve_factors)(double* x, const double* factors, int n);
     /// the largest |x_i|; infinite where one is not finite
     double (*largest)(const double* x, int n);
 };

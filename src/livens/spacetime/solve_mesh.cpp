@@ -128,7 +128,7 @@ private:
 Uncertainty refuse_undetermined(Window& window, ConditionNumbersOfLast& last, SolveReport& report)
 {
     Uncertainty found;
-    last.measure(report, [&](const auto&) { found = window.uncertainty(); });
+    last.measure(report, [&](const auto&) { found = window.monitor().uncertainty(); });
     if (last.is_stopped()) return {};
     if (last.has_no_memory()) {
         report.status = SolveStatus::suspect;

@@ -41,7 +41,7 @@ public:
 
     /// Of the positive eigenvalues, ascending. `columns`: X of each body by its scaled twist.
     std::vector<Vibration> vibrations(const TwistTerms& terms, const TwistTerms& dampers,
-                                      const std::vector<BodyColumns>& columns) const
+                                      const std::vector<BodyColumns>& columns, double slowest) const
     {
         std::vector<Vibration> found;
         if (terms.empty() || !free_ || free_->n == 0) return found;
@@ -50,6 +50,7 @@ public:
         for (int i = 0; i < free_->n; ++i) {
             if (!(spectrum.values[i] > 0)) continue;
             Vibration one{std::sqrt(spectrum.values[i])};
+            if (one.rate < slowest) continue;
             const Values y = product(free_->Z, spectrum.vectors.column(i));
             // With y^T M y = 1 this is y^T C y, the rate at which dampers take this form (theory.md, "What
             // radau takes").
@@ -211,6 +212,23 @@ private:
     DenseMatrix mass_;
 };
 
+/// What joints leave free vibrates no faster than all twists would: no eigenvalue of blocks is larger than
+/// the largest sum of the norms of a row of them. Infinite where the mass is not the identity.
+double fastest_possible(const TwistTerms& restoring, const TwistTerms& mass, std::size_t n_bodies)
+{
+    const auto is_unit = [](const TwistTerm& t) {
+        return norm(t.K - identity<6>()) < 1e-6;   // else an inertia is singular
+    };
+    if (!std::ranges::all_of(mass, is_unit)) return std::numeric_limits<double>::infinity();
+    Values sums(n_bodies, 0.0);
+    for (const TwistTerm& t : restoring) {
+        const double half = 0.5 * norm(t.K);
+        sums[static_cast<std::size_t>(t.i)] += half;
+        sums[static_cast<std::size_t>(t.j)] += half;
+    }
+    return std::sqrt(largest_size(sums));
+}
+
 }   // namespace
 
 std::string Frequency::where(const Model& model) const
@@ -250,20 +268,25 @@ HighestFrequencies highest_frequencies(const Model& model, const State& state, S
     return {load(spring, std::sqrt(spring.value)), load(damper, damper.value), of_constraints};
 }
 
-std::vector<Vibration> vibrations(const Model& model, const State& state, Side side)
+std::vector<Vibration> vibrations(const Model& model, const State& state, Side side, double slowest)
 {
     if (model.has_rotors()) {
         const WithRotors rotors(model);
-        return vibrations(rotors.model(), rotors.with(state), side);
+        return vibrations(rotors.model(), rotors.with(state), side, slowest);
     }
-    const PreparedState at(model, state, side, true);
-    if (!at.is_fit) return {};
-    const SmallMotions forms(at.tables, at.state, side);
-    TwistTerms restoring, dampers, mass;
-    forms.add_loads(restoring, dampers);
-    forms.add_constraints(restoring);
-    forms.add_mass(mass);
-    return Spectrum(at.tables, at.state, mass).vibrations(restoring, dampers, forms.columns());
+    for (const bool by_basis : {false, true}) {
+        const PreparedState at(model, state, side, by_basis);
+        if (!at.is_fit) return {};
+        const SmallMotions forms(at.tables, at.state, side);
+        TwistTerms restoring, dampers, mass;
+        forms.add_loads(restoring, dampers);
+        forms.add_constraints(restoring);
+        forms.add_mass(mass);
+        if (fastest_possible(restoring, mass, model.bodies().size()) < slowest) return {};
+        if (at.state.held.by_joints) continue;   // many freedoms, of which it has made no basis
+        return Spectrum(at.tables, at.state, mass).vibrations(restoring, dampers, forms.columns(), slowest);
+    }
+    return {};
 }
 
 }   // namespace livens

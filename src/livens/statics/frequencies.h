@@ -48,8 +48,9 @@ struct HighestFrequencies {
 /// badly held.
 HighestFrequencies highest_frequencies(const Model& model, const State& state, Side side = Side::right);
 
-/// Of springs and constraints together, ascending rates; work grows with the cube of the freedoms. Throws
-/// likewise.
-std::vector<Vibration> vibrations(const Model& model, const State& state, Side side = Side::right);
+/// Of springs and constraints together, ascending rates from `slowest` rad/s on; work grows with the cube of
+/// the freedoms, but with the bodies where sizes of the terms tell that nothing is so fast. Throws likewise.
+std::vector<Vibration> vibrations(const Model& model, const State& state, Side side = Side::right,
+                                  double slowest = 0);
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens

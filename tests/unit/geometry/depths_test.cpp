@@ -4,6 +4,7 @@
 #include <random>
 
 #include "livens/geometry/detail/depths.h"
+#include "sanitized.h"
 #include "unit/geometry/shapes.h"
 
 namespace livens::depths_test {
@@ -120,6 +121,7 @@ Mesh nested(int n)
 /// the turning of them 5 s.
 TEST(Nested, ShellsAreRefusedByTheirNumberInNoTime)
 {
+    if (is_sanitized) GTEST_SKIP() << study;
     Mesh mesh = nested(5000);
     const std::clock_t begin = std::clock();
     turn_outwards(mesh);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "livens/solvers/dense.h"
+#include "livens/solvers/instructions.h"
 
 namespace livens::dense_test {
 namespace {
@@ -46,18 +47,23 @@ void fill(DenseLU& lu, const Values& A, int n)
 
 TEST(DenseLU, SolvesRandomSystemsOfEverySizeToRounding)
 {
-    for (int n = 1; n <= 65; ++n) {
-        const Values A = random_values(static_cast<std::size_t>(n * n), 7u + static_cast<unsigned>(n));
-        const Values b = random_values(static_cast<std::size_t>(n), 99);
-        DenseLU lu;
-        fill(lu, A, n);
-        ASSERT_TRUE(lu.factorise());
-        Values x = b;
-        lu.solve(x.data());
-        double size = 0;
-        for (double v : x) size = std::max(size, std::abs(v));
-        EXPECT_LT(residual(A, x, b), 1e-14 * n * (1 + size)) << "n = " << n;
+    const Instructions before = instructions();
+    for (const Instructions set : {Instructions::sse2, Instructions::avx2}) {
+        if (!use_instructions(set)) continue;
+        for (int n = 1; n <= 65; ++n) {
+            const Values A = random_values(static_cast<std::size_t>(n * n), 7u + static_cast<unsigned>(n));
+            const Values b = random_values(static_cast<std::size_t>(n), 99);
+            DenseLU lu;
+            fill(lu, A, n);
+            ASSERT_TRUE(lu.factorise());
+            Values x = b;
+            lu.solve(x.data());
+            double size = 0;
+            for (double v : x) size = std::max(size, std::abs(v));
+            EXPECT_LT(residual(A, x, b), 1e-14 * n * (1 + size)) << "n = " << n << ", " << to_string(set);
+        }
     }
+    use_instructions(before);
 }
 
 TEST(DenseLU, ExchangesRowsWhereTheDiagonalIsZero)

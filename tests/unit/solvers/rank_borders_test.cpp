@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "livens/solvers/dense.h"
-#include "livens/solvers/rank_borders.h"
+#include "livens/solvers/ranks/rank_borders.h"
 
 namespace livens::rank_borders_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "livens/solvers/rank_ends.h"
+#include "livens/solvers/ranks/rank_ends.h"
 
 namespace livens::rank_ends_test {
 namespace {

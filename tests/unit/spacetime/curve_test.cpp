@@ -10,6 +10,7 @@
 #include "livens/spacetime/leading.h"
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/solve.h"
+#include "sanitized.h"
 
 namespace livens::curve_test {
 namespace {
@@ -86,6 +87,7 @@ TEST(Curve, PassesFoldsWhereTheWayTurnsBack)
         EXPECT_LT(one.by_curve.share, 0.5) << "straight on it comes no farther";
         EXPECT_GE(one.by_curve.turns, 2) << duration;
         EXPECT_LT(one.missed, 1e-9) << duration;
+        if (is_sanitized) return;   // one of them does
     }
 }
 

@@ -137,12 +137,13 @@ TEST(MarchKernel, AgreesWithNewtonOnRadauPoints)
 {
     with_all_instructions([] {
         int unsolved = 0;
-        const std::vector<double> found = differences(200, 0, unsolved, Points::radau);
+        const std::vector<double> found = differences(is_sanitized ? 50 : 200, 0, unsolved, Points::radau);
         EXPECT_LT(unsolved, 20);
         EXPECT_LT(found[found.size() / 2], 1e-14);
         EXPECT_LT(found.back(), 1e-13);
         std::vector<double> stiff;
-        EXPECT_GT(solved_with_stiff_loads(100, true, stiff, Points::radau), 85);
+        constexpr int n = is_sanitized ? 20 : 100;
+        EXPECT_GT(solved_with_stiff_loads(n, true, stiff, Points::radau), 0.85 * n);
         EXPECT_LT(stiff[stiff.size() / 2], 5e-13);
         EXPECT_LT(stiff.back(), 1e-11);
         unsolved = 0;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace livens::frequencies_test {
@@ -159,6 +160,37 @@ TEST(Frequencies, OfManyBodiesAreThoseOfADenseSolver)
         EXPECT_GT(of_springs.dampers.rate, 0.1);
         EXPECT_EQ(of_springs.dampers.name, "load 'spring3'");
     }
+}
+
+/// Those from a rate on are the fastest of all, and the bound that spares the rest hides none of them: of two
+/// masses on one spring it is the rate itself.
+TEST(Frequencies, FromARateOnAreTheFastestOfAll)
+{
+    Model two;
+    two.add_body(point_mass("one", 2, {0, 0, 0}));
+    two.add_body(point_mass("other", 2, {1, 0, 0}));
+    two.add_load(spring_damper("spring", 0, {}, 1, {}, {100, 0, 1}));   // 10 rad/s, and its bound, too
+    std::vector<Model> models{two};
+    for (const int n : {1, 3, 18, 30}) {
+        models.push_back(chain(n, 9.81, 40));
+        models.push_back(chain(n, 0, 4e4));
+        models.push_back(chain(n, 9.81, 0));
+    }
+    int n_hidden = 0;
+    for (const Model& model : models) {
+        const std::vector<Vibration> all = vibrations(model, model.start());
+        ASSERT_FALSE(all.empty());
+        for (const double share : {0.1, 0.9, 1 - 1e-9, 1 + 1e-9, 1.5, 10.0}) {
+            const double slowest = share * all.back().rate;
+            const auto found = vibrations(model, model.start(), Side::right, slowest);
+            const auto n = std::ranges::count_if(all, [&](const auto& v) { return v.rate >= slowest; });
+            ASSERT_EQ(static_cast<long>(found.size()), n) << share;
+            for (std::size_t i = 0; i < found.size(); ++i)
+                EXPECT_EQ(found[i].rate, all[all.size() - found.size() + i].rate) << share;
+            n_hidden += found.empty();
+        }
+    }
+    EXPECT_GE(n_hidden, 3 * static_cast<int>(models.size()));
 }
 
 /// A torque about an axis of the world does no work on a symmetric motion: what its tangent leaves is

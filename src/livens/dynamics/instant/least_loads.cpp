@@ -91,6 +91,7 @@ LeastLoads::Part LeastLoads::part_of(int joint)
     part.loads.resize(6 * n * part.bodies.size());
     part.scaled.resize(part.loads.size());
     part.sums.resize(n);
+    part.poles.resize(part.bodies.size());
     serves_ = serves_ && part.n_rows <= most_rows_of_joint;
     return part;
 }
@@ -151,6 +152,9 @@ void LeastLoads::form(const Joint& joint, Instant at, std::span<const Matrix34> 
     std::ranges::fill(part.reactions, 0.0);
     std::ranges::fill(part.loads, 0.0);
     double g[RowTables::gradient_size];
+    Vector3 point{};   // from the body's origin, in space, as poles are
+    for (int b = 0; b < n_bodies; ++b) part.poles[b] = in_space(X[part.bodies[b]], poles_[part.bodies[b]]);
+    if (joint.second != world) point = in_space(X[joint.second], joint.point_second);
     for (int r = 0; r < n; ++r) {
         const RowTable& row = tables_[static_cast<std::size_t>(part.first_row + r)];
         tables_.gradient(part.first_row + r, at, X.data()->data(), g);
@@ -165,13 +169,13 @@ void LeastLoads::form(const Joint& joint, Instant at, std::span<const Matrix34> 
                 else
                     moment += cross(X[body].column(a / 3), column);
             }
-            const auto put_about = [&](const Vector3& point, double sign, double* to) {
-                const Vector3 about = (sign / length_) * (moment - cross(in_space(X[body], point), force));
+            const auto put_about = [&](const Vector3& pole, double sign, double* to) {
+                const Vector3 about = (sign / length_) * (moment - cross(pole, force));
                 for (int i = 0; i < 3; ++i) to[i] = sign * force[i], to[3 + i] = about[i];
             };
             const auto place = std::ranges::find(part.bodies, body) - part.bodies.begin();
-            put_about(poles_[body], 1, part.loads.data() + 6 * (r * n_bodies + place));
-            if (body == joint.second) put_about(joint.point_second, -1, part.reactions.data() + 6 * r);
+            put_about(part.poles[place], 1, part.loads.data() + 6 * (r * n_bodies + place));
+            if (body == joint.second) put_about(point, -1, part.reactions.data() + 6 * r);
         }
     }
     for (int r = 0; r < n; ++r)
@@ -219,8 +223,8 @@ bool LeastLoads::factorise()
         double pivot = square;
         for (int k = first_[i]; k < i; ++k) {
             const double* above = line(k);
-            double sum = row[k];
-            for (int m = std::max(first_[i], first_[k]); m < k; ++m) sum -= row[m] * above[m];
+            const int from = std::max(first_[i], first_[k]);
+            const double sum = row[k] - inner(row + from, above + from, k - from);
             row[k] = above[k] > 0 ? sum / above[k] : 0;
             pivot -= row[k] * row[k];
         }

@@ -20,6 +20,7 @@ struct LoadsOfJoint {
     std::vector<double> loads{};       ///< on the bodies about their poles, 6 numbers each, row by row
     std::vector<double> scaled{};      ///< the inverse factor times them
     std::vector<double> sums{};        ///< one a row
+    std::vector<Vector3> poles{};      ///< of the bodies, from their origins, in space
 };
 
 /// What least_reactions() says of forces and torques, without what it says of which of them are unique, for a

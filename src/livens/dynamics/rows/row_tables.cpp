@@ -68,6 +68,18 @@ RowTable row_table(const ConstraintRow& row)
     return table;
 }
 
+/// x^T K x of a quadratic form.
+double form_at(const RowTable& t, const double* X)
+{
+    double sum = 0;
+    for (const auto& entry : t.form) {
+        const double* from = X + 12 * t.bodies[entry.from_side] + entry.from;
+        const double* to = X + 12 * t.bodies[entry.to_side] + entry.to;
+        sum += entry.value * (from[0] * to[0] + from[1] * to[1] + from[2] * to[2]);
+    }
+    return sum;
+}
+
 }   // namespace
 
 RowTables::RowTables(const Model& model, bool with_rigidity)
@@ -135,22 +147,22 @@ double RowTables::value(int r, Instant at, const double* X, const double* g) con
 
 double RowTables::value(int r, Instant at, const double* X) const
 {
-    double g[gradient_size];
-    if (tables_[r].is_quadratic) gradient(r, at, X, g);   // others do not look at it
-    return value(r, at, X, g);
+    const RowTable& t = tables_[r];
+    if (!t.is_quadratic) return constraint_value(*t.row, at, Configurations(X));
+    double linear = 0;
+    for (int side = 0; side < t.n_sides; ++side) {
+        const double* x = X + 12 * t.bodies[side];
+        for (const int a : t.columns[side])
+            for (int i = 0; i < 3; ++i) linear += t.B[side].a[a + i] * x[a + i];
+    }
+    return 0.5 * form_at(t, X) + linear + t.row->c;
 }
 
 double RowTables::curvature(int r, Instant at, const double* X, const double* V) const
 {
     const RowTable& t = tables_[r];
     if (!t.is_quadratic) return constraint_curvature(*t.row, at, Configurations(X), Configurations(V));
-    double sum = 0;
-    for (const auto& entry : t.form) {
-        const double* from = V + 12 * t.bodies[entry.from_side] + entry.from;
-        const double* to = V + 12 * t.bodies[entry.to_side] + entry.to;
-        sum += entry.value * (from[0] * to[0] + from[1] * to[1] + from[2] * to[2]);
-    }
-    return sum;
+    return form_at(t, V);
 }
 
 }   // namespace livens

@@ -23,8 +23,11 @@ private:
         double entries[6];
     };
 
-    int n_rows_ = 0;
+    void arrange(const ModelTables& tables, const std::vector<int>& rows);
+
+    std::vector<int> rows_;     // which the sides are arranged for
     std::vector<Side> sides_;   // body by body
+    std::vector<int> order_;    // of them, by the sides of rows, one row after the other
     std::vector<double> gradient_, product_;
 };
 

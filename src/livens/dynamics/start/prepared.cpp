@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "livens/dynamics/rows/tables.h"
+#include "livens/dynamics/start/singular.h"
 
 namespace livens {
 
@@ -34,6 +35,7 @@ void Prepared::serve(const Model& model)
     if (version_ == model.version()) return;
     version_ = model.version();
     closed_.reset();
+    regular_.reset();
     pattern_ = std::make_shared<KnownPattern>();
 }
 
@@ -51,6 +53,15 @@ ConsistentStart Prepared::close(const Model& model, const State& start, StartPol
     TriedStart tried = try_close(model, start, policy);
     if (!tried.closed) throw InputError(std::move(tried.why));
     return std::move(*tried.closed);
+}
+
+std::optional<Complaint> Prepared::why_singular(const Model& model, const ConsistentStart& closed)
+{
+    serve(model);
+    if (regular_ && are_same(*regular_, closed.start)) return {};
+    std::optional<Complaint> why = livens::why_singular(model, closed);
+    if (!why) regular_ = closed.start;
+    return why;
 }
 
 std::shared_ptr<KnownPattern> Prepared::pattern(const Model& model)

@@ -28,6 +28,8 @@ public:
     TriedStart try_close(const Model& model, const State& start, StartPolicy policy);
     /// The same, thrown as consistent_start() does.
     ConsistentStart close(const Model& model, const State& start, StartPolicy policy);
+    /// The same of a start that was closed, which is not looked at anew where the last one was in order.
+    std::optional<Complaint> why_singular(const Model& model, const ConsistentStart& closed);
     /// Where the Tables of this model keep the pattern of their rows.
     std::shared_ptr<KnownPattern> pattern(const Model& model);
 
@@ -42,6 +44,7 @@ private:
 
     std::uint64_t version_ = 0;
     std::optional<AcceptedElements> closed_;
+    std::optional<State> regular_;   // the last that was no singular position
     std::shared_ptr<KnownPattern> pattern_;
 };
 

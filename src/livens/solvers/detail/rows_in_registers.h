@@ -207,6 +207,57 @@ void reflect_rows(double* z, int n, double beta, const double* v, int rows)
     for (; c < n; ++c) reflect_columns<double>(z + c, n, beta, v, rows);
 }
 
+/// x_k -= a_k y of four rows a_k of n numbers, so far apart.
+inline void subtract_four_products(double* x, const double* a, std::ptrdiff_t apart, const double* y, int n)
+{
+    const double *a1 = a + apart, *a2 = a1 + apart, *a3 = a2 + apart;
+    Held s0{}, s1{}, s2{}, s3{};
+    int i = 0;
+    for (; i + held <= n; i += held) {
+        const Held v = at(y + i);
+        s0 += at(a + i) * v;
+        s1 += at(a1 + i) * v;
+        s2 += at(a2 + i) * v;
+        s3 += at(a3 + i) * v;
+    }
+    double t0 = sum_of(s0), t1 = sum_of(s1), t2 = sum_of(s2), t3 = sum_of(s3);
+    for (; i < n; ++i) {
+        t0 += a[i] * y[i];
+        t1 += a1[i] * y[i];
+        t2 += a2[i] * y[i];
+        t3 += a3[i] * y[i];
+    }
+    x[0] -= t0;
+    x[1] -= t1;
+    x[2] -= t2;
+    x[3] -= t3;
+}
+
+/// Four rows at a time: x is read once for them, and their sums do not wait for each other.
+void solve_factors(double* x, const double* factors, int n)
+{
+    const int fours = n - n % 4;
+    for (int i = 0; i < fours; i += 4) {
+        const double *r = factors + std::ptrdiff_t{n} * i, *d = r + i;
+        subtract_four_products(x + i, r, n, x, i);
+        for (int k = 1; k < 4; ++k)
+            for (int l = 0; l < k; ++l) x[i + k] -= d[k * n + l] * x[i + l];
+    }
+    for (int i = fours; i < n; ++i) x[i] -= inner(factors + std::ptrdiff_t{n} * i, x, i);
+    for (int i = n - 4; i >= 0; i -= 4) {
+        const double* d = factors + std::ptrdiff_t{n} * i + i;
+        subtract_four_products(x + i, d + 4, n, x + i + 4, n - i - 4);
+        for (int k = 3; k >= 0; --k) {
+            for (int l = k + 1; l < 4; ++l) x[i + k] -= d[k * n + l] * x[i + l];
+            x[i + k] /= d[k * n + k];
+        }
+    }
+    for (int i = n % 4 - 1; i >= 0; --i) {
+        const double* d = factors + std::ptrdiff_t{n} * i + i;
+        x[i] = (x[i] - inner(d + 1, x + i + 1, n - i - 1)) / *d;
+    }
+}
+
 /// A sum is no number where one of its terms is none; infinite ones are the largest themselves.
 double largest(const double* x, int n)
 {
@@ -236,9 +287,9 @@ double largest(const double* x, int n)
     return left == left ? found : __builtin_inf();
 }
 
-constexpr RowFunctions in_registers{inner,           subtract_scaled, reflect,     subtract_pair,
-                                    subtract_fours,  product,         reflect_all, reflect_back,
-                                    make_reflection, reflect_rows,    largest};
+constexpr RowFunctions in_registers{inner,           subtract_scaled, reflect,       subtract_pair,
+                                    subtract_fours,  product,         reflect_all,   reflect_back,
+                                    make_reflection, reflect_rows,    solve_factors, largest};
 
 }   // namespace
 }   // namespace livens::inline solvers_internal

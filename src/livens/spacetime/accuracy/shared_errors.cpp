@@ -15,13 +15,13 @@ namespace livens {
 
 namespace {
 
-/// Of the joints that act before an element end.
-std::vector<Vibration> vibrations_beside(const Model& model, const Motion& motion, int end)
+/// Of the joints that act before an element end, from `slowest` rad/s on.
+std::vector<Vibration> vibrations_beside(const Model& model, const Motion& motion, int end, double slowest)
 {
-    if (!model.has_events()) return vibrations(model, motion.at_end(end));
+    if (!model.has_events()) return vibrations(model, motion.at_end(end), Side::right, slowest);
     const int element = std::max(end - 1, 0);
     const double middle = motion.mesh.ends[element] + 0.5 * motion.mesh.length(element);
-    return vibrations(acting_at(model, middle).model, motion.at_end(end));
+    return vibrations(acting_at(model, middle).model, motion.at_end(end), Side::right, slowest);
 }
 
 /// The root of twice the energy that a motion of radau may have lost.
@@ -83,8 +83,9 @@ void spacetime_internal::add_events(const Model& model, const Motion& motion, Er
     for (const int event : event_ends(model, motion)) {
         ActivationMismatch off = activation_mismatch(model, motion, event);
         double slowest = std::numeric_limits<double>::infinity(), fastest = 0, shift = 0, turn = 0;
-        for (const Vibration& one : vibrations_beside(model, motion, event)) {
-            if (one.rate * motion.mesh.length(event - 1) < motion.X.degree || one.decay > one.rate) continue;
+        const double unresolved = motion.X.degree / motion.mesh.length(event - 1);
+        for (const Vibration& one : vibrations_beside(model, motion, event, unresolved)) {
+            if (one.decay > one.rate) continue;
             slowest = std::min(slowest, one.rate);
             raise_to(fastest, one.rate);
             raise_to(shift, one.shift);
@@ -118,8 +119,8 @@ void spacetime_internal::add_lost_vibrations(const Model& model, const Motion& m
     for (int e = 0; e < motion.n_elements(); ++e) raise_to(longest, motion.mesh.length(e));
     double shift = 0, turn = 0, speed = 0, fastest = 0;   // by the root of twice the energy; 1/s
     for (const int end : {0, motion.n_elements() / 2, motion.n_elements()}) {
-        for (const Vibration& one : vibrations_beside(model, motion, end)) {
-            if (one.rate * longest < motion.X.degree || one.rate < one.decay) continue;
+        for (const Vibration& one : vibrations_beside(model, motion, end, motion.X.degree / longest)) {
+            if (one.rate < one.decay) continue;
             raise_to(fastest, one.rate);
             raise_to(shift, one.shift / one.rate);
             raise_to(turn, one.turn / one.rate);

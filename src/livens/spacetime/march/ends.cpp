@@ -26,8 +26,11 @@ std::optional<Complaint> close_end(const Model& model, State& state, Known known
                                              : try_consistent_start(model, state, policy);
     if (!tried.closed) return std::move(tried.why);
     ConsistentStart& closed = *tried.closed;
-    if (known == Known::state)
-        if (std::optional<Complaint> why = why_singular(model, closed)) return why;
+    if (known == Known::state) {
+        std::optional<Complaint> why =
+            prepared != nullptr ? prepared->why_singular(model, closed) : why_singular(model, closed);
+        if (why) return why;
+    }
     state = std::move(closed.start);
     if (known == Known::positions) state.V = guessed;
     ends.independent = std::move(closed.independent);

@@ -61,8 +61,8 @@ struct Uncertainty {
     std::vector<double> numbers{};   ///< how far it may move each unknown number, by its scale
 };
 
-/// What a family may know of single elements of a march forwards or backwards, beyond their equations. As it
-/// stands here it knows nothing.
+/// What a family may know beyond the equations of its windows: of single elements of a march forwards or
+/// backwards, and of a solution between conditions. As it stands here it knows nothing.
 class ElementMonitor {
 public:
     virtual ~ElementMonitor() = default;
@@ -89,6 +89,8 @@ public:
     virtual std::vector<Unseen> take_unseen() { return {}; }
     /// What was closed so far; null: the family cannot say.
     virtual const Motion* so_far() { return nullptr; }
+    /// Of the solution at hand, by the last factors. 0: the family does not say.
+    virtual Uncertainty uncertainty() { return {}; }
 };
 
 /// A family of elements on a mesh: it states the equations of any stretch of elements, a window, and keeps
@@ -125,8 +127,6 @@ public:
     /// between nodes beyond `trust`), or whose end is no state to go on from (the report says why). What was
     /// refused for its rank may be closed all the same, without asking for that.
     virtual AcceptedElements close(const AcceptanceCriteria& criteria, SolveReport& report) = 0;
-    /// Of the solution at hand, by the last factors. 0: the family does not say.
-    virtual Uncertainty uncertainty() { return {}; }
     /// Where the residual is worst, or the load that is not finite.
     virtual WorstResidual worst() const = 0;
     /// Figures that only the family knows: unknowns, pivots, entries of factors.

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "livens/solvers/rank_factors.h"
+#include "livens/solvers/ranks/rank_factors.h"
 #include "livens/spacetime/mixed/block.h"
 
 namespace livens::mixed {

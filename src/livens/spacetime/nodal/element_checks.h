@@ -8,9 +8,9 @@
 
 #include "livens/spacetime/march/window.h"
 #include "livens/spacetime/nodal/branches.h"
-#include "livens/spacetime/nodal/calm_laws.h"
 #include "livens/spacetime/nodal/inside.h"
-#include "livens/spacetime/nodal/switching_points.h"
+#include "livens/spacetime/nodal/laws/calm_laws.h"
+#include "livens/spacetime/nodal/laws/switching_points.h"
 
 namespace livens::inline spacetime_internal {
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "livens/diagnostics/estimate.h"
-#include "livens/spacetime/nodal/calm_laws.h"
-#include "livens/spacetime/nodal/law_on_path.h"
-#include "livens/spacetime/nodal/looks_in_lanes.h"
-#include "livens/spacetime/nodal/missed_moments.h"
+#include "livens/spacetime/nodal/laws/calm_laws.h"
+#include "livens/spacetime/nodal/laws/law_on_path.h"
+#include "livens/spacetime/nodal/laws/looks_in_lanes.h"
+#include "livens/spacetime/nodal/laws/missed_moments.h"
 
 namespace livens::inline dynamics_internal {
 class InstantSystem;

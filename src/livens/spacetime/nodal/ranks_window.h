@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "livens/solvers/rank_ends.h"
+#include "livens/solvers/ranks/rank_ends.h"
 #include "livens/spacetime/march/part_of_ranks.h"
 #include "livens/spacetime/march/partition.h"
 #include "livens/spacetime/nodal/unknowns_window.h"

@@ -6,7 +6,7 @@
 
 #include "livens/dynamics/rows/tables.h"
 #include "livens/solvers/room.h"
-#include "livens/spacetime/nodal/element_loads.h"
+#include "livens/spacetime/nodal/laws/element_loads.h"
 
 namespace livens::inline dynamics_internal {
 struct ConstraintBasis;

@@ -161,7 +161,7 @@ AcceptedElements UnknownsWindow::close(const AcceptanceCriteria& criteria, Solve
 Uncertainty UnknownsWindow::uncertainty()
 {
     if (!is_formed_) return {1, "the motion with its unknown numbers", 1};
-    Uncertainty found = now_->window->uncertainty();
+    Uncertainty found = now_->window->monitor().uncertainty();
     for (int i = 0; i < problem_.size(); ++i) {
         const double moved = found.numbers.empty() ? 0 : found.numbers[i];
         if (moved <= found.size) continue;

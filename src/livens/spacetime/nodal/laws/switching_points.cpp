@@ -2,7 +2,7 @@
 // The first instant of an element at which a law switches to another of its pieces: samples at 4 (p + 1)
 // shares, then bisection where a guard has left its piece, golden section where it may have left it between
 // two samples, and Newton's iteration where a vector passes through zero (docs/theory.md, "Laws that bend").
-#include "livens/spacetime/nodal/switching_points.h"
+#include "livens/spacetime/nodal/laws/switching_points.h"
 
 #include <algorithm>
 #include <cmath>

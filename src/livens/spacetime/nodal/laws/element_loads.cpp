@@ -2,7 +2,7 @@
 // F_A of the elements of a window: loads at the p points of the element's second rule, Gauss points or the
 // nodes of radau, shared out to the nodes by the values of their polynomials there, so that impulses and
 // moments are those of the load itself (docs/theory.md, "The element", "Why two rules", "Radau points").
-#include "livens/spacetime/nodal/element_loads.h"
+#include "livens/spacetime/nodal/laws/element_loads.h"
 
 #include <algorithm>
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "livens/spacetime/nodal/calm_laws.h"
-#include "livens/spacetime/nodal/looks_in_lanes.h"
-#include "livens/spacetime/nodal/watched_law.h"
+#include "livens/spacetime/nodal/laws/calm_laws.h"
+#include "livens/spacetime/nodal/laws/looks_in_lanes.h"
+#include "livens/spacetime/nodal/laws/watched_law.h"
 
 namespace livens::inline spacetime_internal {
 

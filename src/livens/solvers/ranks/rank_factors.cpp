@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A stretch of rows in every rank, eliminated apart from all others, and the chain of what is left of them.
-#include "livens/solvers/rank_factors.h"
+#include "livens/solvers/ranks/rank_factors.h"
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
 #include "livens/solvers/detail/stretch.h"
-#include "livens/solvers/rank_borders.h"
+#include "livens/solvers/ranks/rank_borders.h"
 
 namespace livens::inline solvers_internal {
 

@@ -2,7 +2,7 @@
 // A law with pieces along the polynomials of an element: the number of each guard, which changes its piece
 // where it passes one of its places, and the vector at whose zero the law is not smooth (docs/theory.md,
 // "Laws that bend").
-#include "livens/spacetime/nodal/watched_law.h"
+#include "livens/spacetime/nodal/laws/watched_law.h"
 
 #include <algorithm>
 

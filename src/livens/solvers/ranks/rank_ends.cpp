@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The chain of ranks' chains: of each what its elements leave, by what it has in common with its neighbours.
-#include "livens/solvers/rank_ends.h"
+#include "livens/solvers/ranks/rank_ends.h"
 
 #include <algorithm>
 #include <cmath>

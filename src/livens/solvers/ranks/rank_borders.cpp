@@ -2,7 +2,7 @@
 // Orthogonal sums of rows that see one border alone, and what these leave free there. Sums are chosen by
 // pivoted QR; what they still see of others, a share of 1e-10, is left out, and comes back when solutions are
 // refined by the rows as they are.
-#include "livens/solvers/rank_borders.h"
+#include "livens/solvers/ranks/rank_borders.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 // "Looks at laws"). The interval is divided until the integral is verified: enclosed slopes bound the
 // integral of a needle between two samples, and a second rule on the same samples bounds the quadrature
 // error.
-#include "livens/spacetime/nodal/missed_moments.h"
+#include "livens/spacetime/nodal/laws/missed_moments.h"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +12,8 @@
 #include <mutex>
 #include <utility>
 
-#include "livens/spacetime/nodal/law_on_path.h"
-#include "livens/spacetime/nodal/looks_in_lanes.h"
+#include "livens/spacetime/nodal/laws/law_on_path.h"
+#include "livens/spacetime/nodal/laws/looks_in_lanes.h"
 
 namespace livens {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Guards and centres at the load points of an element, as the lanes have them that evaluated the loads
 // (docs/theory.md, "Laws that bend").
-#include "livens/spacetime/nodal/calm_laws.h"
+#include "livens/spacetime/nodal/laws/calm_laws.h"
 
 #include <algorithm>
 #include <cmath>

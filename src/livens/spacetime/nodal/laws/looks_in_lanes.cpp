@@ -2,7 +2,7 @@
 // Looks at laws as lanes: X and X' of the element's polynomials at all shares, and what is recorded of the
 // laws there, some shares after the other, since angles count their turns along the way
 // (docs/theory.md, "Looks at laws").
-#include "livens/spacetime/nodal/looks_in_lanes.h"
+#include "livens/spacetime/nodal/laws/looks_in_lanes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -130,7 +130,7 @@ void LooksInLanes::look(const WindowLayout& layout, const NodePositions& nodes, 
         }
         lanes_.begin(instants);
         functions_->loads->interpolate_arms(lanes_.view(), start_.data(), increments_.data(),
-                                     weights_.M.data() + first * W, weights_.dM.data() + first * W);
+                                            weights_.M.data() + first * W, weights_.dM.data() + first * W);
         lanes_.go_on(turns_);
         keep(first);
     }

@@ -3,13 +3,13 @@
 // Gauss-Lobatto points, its slope follows by their differentiation matrix, and interval enclosures of both
 // between two shares are chords, widened by an eighth of the width squared times the second derivative
 // (docs/theory.md, "Looks at laws", Enclosures).
-#include "livens/spacetime/nodal/law_on_path.h"
+#include "livens/spacetime/nodal/laws/law_on_path.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "livens/spacetime/nodal/looks_in_lanes.h"
+#include "livens/spacetime/nodal/laws/looks_in_lanes.h"
 
 namespace livens::inline spacetime_internal {
 
