@@ -60,6 +60,8 @@ Accelerations::Accelerations(const Model& model, const Motion& motion)
       phases_(std::make_shared<std::vector<std::shared_ptr<Phase>>>(events_.size() + 1))
 {}
 
+/// Made at the first question between two events. Its rows are those that are independent at t, at the start
+/// of the element or inside of it, where most are: one of these places may be singular.
 Accelerations::Phase& Accelerations::phase_at(double t) const
 {
     const auto after = std::ranges::upper_bound(events_, t);
@@ -81,6 +83,8 @@ bool Accelerations::is_at_end(const State& state) const
     return element_end_at(motion_.mesh, state.t) >= 0 && !motion_.accelerations.empty();
 }
 
+/// At element ends the motion has them, two an end: on the left and on the right. From the left an instant
+/// belongs to the phase before it; X and V are those that the equations were solved with.
 AcceleratedState Accelerations::at(const State& state, Side side) const
 {
     if (is_at_end(state)) {
@@ -138,6 +142,8 @@ std::vector<double> Accelerations::multipliers_at(const State& state) const
     return all;
 }
 
+/// d_i'' = alpha x d_i + w x (w x d_i). Of an orthonormal triad sum d_i x (alpha x d_i) = 2 alpha, and the
+/// second terms add up to w x w = 0.
 Vector3 angular_acceleration(const Matrix34& X, const Matrix34& A)
 {
     Vector3 sum{};

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Energy and momenta at element ends, against what loads, weights and joints to the world supply up to there:
+// theory.md, "What is diagnosed". Supplies come element by element from the pass over the motion.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -135,6 +137,7 @@ private:
         for (const Matrix34& p : P) momentum += norm(p.column(0));
         raise_to(figures_.largest_momentum, momentum);
     }
+    /// Bodies that hold states are no matter: what they have counts as no momentum.
     std::vector<Matrix34> momenta_of_matter(const std::vector<Matrix34>& all, int end) const
     {
         const auto first =
@@ -178,6 +181,7 @@ private:
         append_rise(piece.energy.back());
     }
     /// From the lowest that it was since the start.
+    /// Only what is supplied is taken off a rise; what loads take out is not credited to it.
     void append_rise(double energy)
     {
         const double supplied = std::max(total_.work - last_work_, 0.0);

@@ -97,6 +97,8 @@ void ErrorMeter::compare(const Motion& finer, int first, int last)
     estimate_.find_largest(motion_.mesh);
 }
 
+/// An end that the other motion has not gets the larger error of its neighbours; fmax() takes the one that is
+/// known where one is not.
 void ErrorMeter::fill(int end)
 {
     if (end == 0 || end + 1 >= static_cast<int>(motion_.mesh.ends.size())) return;
@@ -112,6 +114,8 @@ void ErrorMeter::fill(int end)
     of(estimate_.reaction, estimate_.n_joints);
 }
 
+/// Where places were given both motions have the same: there, what their velocities differ by moves them over
+/// the element before.
 void ErrorMeter::compare_states(int end, const State& a, const State& b)
 {
     const bool is_given = std::ranges::find(given_places_, end) != given_places_.end();
@@ -218,6 +222,7 @@ BodyGap gap_between(const State& a, const State& b, const Body& body, int index,
         }
     }
     // the chord of a turn by phi is 2 sqrt(2) sin(phi / 2)
+    // and sum_i |w x d_i|^2 = 2 w^2
     const double chord = std::sqrt(turn / 8);
     return {norm(shift) / length, chord > 1 ? std::numbers::pi : 2 * arc_sine(chord), norm(push),
             std::sqrt(spin / 2)};

@@ -209,7 +209,7 @@ struct JointSampler::Parts {
 
     [[gnu::visibility("hidden")]] std::optional<Held> held_in(const Model& model, const Motion& motion,
                                                               const State& state);
-    Reaction reaction(const Model& model, int joint, std::span<const Matrix34> X,
+    Reaction reaction(const Model& model, int joint, Instant at, std::span<const Matrix34> X,
                       std::span<const double> multipliers) const;
 
     RowTables rows;
@@ -255,7 +255,7 @@ std::optional<Held> JointSampler::Parts::held_in(const Model& model, const Motio
 }
 
 /// joint_reaction() by the tables.
-Reaction JointSampler::Parts::reaction(const Model& model, int joint, std::span<const Matrix34> X,
+Reaction JointSampler::Parts::reaction(const Model& model, int joint, Instant at, std::span<const Matrix34> X,
                                        std::span<const double> multipliers) const
 {
     const Joint& j = model.joints()[joint];
@@ -265,7 +265,7 @@ Reaction JointSampler::Parts::reaction(const Model& model, int joint, std::span<
         if (multipliers[r] == 0) continue;
         const RowTable& row = rows[static_cast<std::size_t>(r)];
         double g[RowTables::gradient_size];
-        rows.gradient(r, {}, X.data()->data(), g);
+        rows.gradient(r, at, X.data()->data(), g);
         for (int side = 0; side < row.n_sides; ++side) {
             if (row.bodies[side] != j.second) continue;
             for (const int column : row.columns[side])
@@ -281,10 +281,12 @@ std::vector<JointSample> JointSampler::at(const State& given) const
     if (!held) return {};
     const auto reactions = [&](const State& state, std::span<const double> left,
                                std::span<const double> right) {
-        if (model_.has_drives()) return reactions_of(model_, state, left, right, parts_->independent);
+        const bool is_redundant = static_cast<int>(parts_->independent.size()) < model_.n_rows();
+        if (model_.has_drives() && is_redundant)
+            return reactions_of(model_, state, left, right, parts_->independent);
         BothSides both{bounded_joints(model_, left, right), numbers_of(left, right)};
         UniqueReactions own;
-        if (static_cast<int>(parts_->independent.size()) < model_.n_rows()) {
+        if (is_redundant) {
             both.least = least_at(state, element_end_at(motion_.mesh, state.t));
             if (both.least == nullptr) {
                 own = least_reactions(model_, state.X, both.multipliers, parts_->independent);
@@ -292,7 +294,7 @@ std::vector<JointSample> JointSampler::at(const State& given) const
             }
         }
         return reactions_by(model_, both, [&](int j, std::span<const double> multipliers) {
-            return parts_->reaction(model_, j, state.X, multipliers);
+            return parts_->reaction(model_, j, {state.t}, state.X, multipliers);
         });
     };
     return joints_in(parts_->acting, motion_, *held, reactions);
@@ -310,7 +312,6 @@ bool JointSampler::find_forces(int end, const State& given, std::vector<JointSam
     const auto n_independent = static_cast<int>(parts_->independent.size());
     const bool is_redundant = n_independent < model_.n_rows();
     if (end < 0 || motion_.end_multipliers.empty() || model_.has_events()) return false;
-    if (model_.has_drives() && !is_redundant) return false;
     const std::size_t n = static_cast<std::size_t>(motion_.n_rows);
     const std::span<const double> both =
         std::span(motion_.end_multipliers).subspan(2 * static_cast<std::size_t>(end) * n, 2 * n);
@@ -327,9 +328,9 @@ bool JointSampler::find_forces(int end, const State& given, std::vector<JointSam
         JointSample& sample = samples[j];
         sample.is_acceleration_level = sample.is_bounded = true;
         const auto reaction = [&](std::size_t side) {
-            return found != nullptr
-                       ? found[side * samples.size() + j]
-                       : parts_->reaction(model_, static_cast<int>(j), given.X, both.subspan(side * n, n));
+            return found != nullptr ? found[side * samples.size() + j]
+                                    : parts_->reaction(model_, static_cast<int>(j), {given.t}, given.X,
+                                                       both.subspan(side * n, n));
         };
         sample.left = reaction(0);
         sample.right = jumps ? reaction(1) : sample.left;

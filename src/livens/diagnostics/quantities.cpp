@@ -242,6 +242,7 @@ void Quantities::put_bodies(const State& state, const AcceleratedState& accelera
     }
 }
 
+/// Places and velocities by the nearest rigid triad, as those of bodies; accelerations are A (1, theta).
 void Quantities::put_points(const State& state, const AcceleratedState& accelerated,
                             std::span<const NamedQuantity> wanted, std::span<double> numbers) const
 {
@@ -308,6 +309,8 @@ void Quantities::put_loads(const State& state, Side side, std::span<const NamedQ
     }
 }
 
+/// The coordinate is read off the drive's row (see driven_coordinate()): of an angle its two factors multiply
+/// the forms of sine and cosine, in this order; another row has the form of the coordinate itself.
 std::optional<DriveEffort> drive_effort(const Joint& joint)
 {
     if (joint.type != "drive" || joint.rows.size() != 1) return {};
@@ -360,6 +363,7 @@ double rope_tension(const Joint& rope, std::span<const Matrix34> X, const Reacti
     return product(reaction, unit) / product(unit, unit);
 }
 
+/// Both bodies as they move at the second one's joint point, about which the reaction is told.
 double joint_power(const Joint& joint, std::span<const Matrix34> X, std::span<const Matrix34> V,
                    const Reaction& reaction)
 {

@@ -40,6 +40,7 @@ void Supply::add(double weight, const Supply& other)
 namespace {
 
 /// 12 numbers, `stride` apart.
+/// Programs of loads see the centre of mass in place of the reference point, with the same directors.
 void put_about_centre(const BodyTable& body, const double* from, double* to, int stride)
 {
     for (int i = 0; i < 12; ++i) to[i * stride] = from[i];
@@ -121,6 +122,7 @@ void LoadSupply::go_to(const MotionPoints& set, int element)
     find_stiffness(set, element);
 }
 
+/// Points of a set ascend in time, so that angles are followed from one to the next.
 void LoadSupply::take_point(const MotionPoints& set, int k)
 {
     std::copy_n(set.X(k), 12 * X_.size(), X_.data()->data());
@@ -128,6 +130,7 @@ void LoadSupply::take_point(const MotionPoints& set, int k)
     turns_.turns().follow(X_, angles_);
 }
 
+/// Loads on states push no matter (theory.md, "States"), and so supply neither momentum nor energy.
 void LoadSupply::add_load(int l, Instant at, Supply& now) const
 {
     const Load& load = model_.loads()[l];
@@ -140,6 +143,7 @@ void LoadSupply::add_load(int l, Instant at, Supply& now) const
     now.work += power_without_potential(load, now_at);
 }
 
+/// Found anew where the element or its loads have changed by half, and in every eighth element.
 void LoadSupply::find_stiffness(const MotionPoints& set, int element)
 {
     constexpr int elements = 8;
@@ -153,6 +157,9 @@ void LoadSupply::find_stiffness(const MotionPoints& set, int element)
     known_ = {all_stiffness(set.instant(0), h), h, gross, 0};
 }
 
+/// Entries count by their size and by that of the column of X that they are multiplied with, of the reference
+/// point with the model's length in addition: near the origin its own size says nothing. V is rounded as X /
+/// h.
 Supply LoadSupply::all_stiffness(Instant at, double h) const
 {
     Supply all;

@@ -64,6 +64,7 @@ struct Excerpt {
     std::string underline;
 };
 
+/// Columns count characters, from 1. A line that fits with what would mark a cut is shown whole.
 Excerpt excerpt(std::string_view line, int column, int length, int widest)
 {
     const bool fits = width(line) <= widest + marks && column <= widest + marks;

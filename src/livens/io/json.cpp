@@ -157,6 +157,8 @@ bool is_json(std::string_view text)
     return reader.value(0) && reader.at_end();
 }
 
+/// A character has one sequence of bytes alone: overlong ones, surrogates and code points beyond U+10FFFF
+/// have none.
 int utf8_length(std::string_view text)
 {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };

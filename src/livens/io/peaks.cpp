@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Quantities by the names that people write, and their extremes: polynomials tell where, and elements that
+// are solved anew up to there tell how large (theory.md, "Extremes").
 #include "livens/io/peaks.h"
 
 #include <algorithm>

@@ -43,6 +43,7 @@ public:
         for (const Vector3& p : surface.points) {
             std::uint64_t cell = 0;
             for (int i = 0; i < 3; ++i)
+                // 11 bits hold 0 to 1024, the last for what lies on the far side of the finest grid
                 cell = cell << 11 | static_cast<std::uint64_t>((p[i] - least[i]) / size);
             cell_of_.push_back(add(cells_, cell_index_, cell, p));
         }
@@ -103,6 +104,7 @@ private:
         }
         return corner_of;
     }
+    /// Of a component of a normal: along its axis, against it, or across.
     static std::uint64_t way(double x) { return x > 0.4 ? 2 : x < -0.4 ? 0 : 1; }
     static int add(std::vector<Cluster>& all, Index& index, std::uint64_t key, const Vector3& v)
     {

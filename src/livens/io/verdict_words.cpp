@@ -32,6 +32,7 @@ const char* grade_of(double drift)
     return "coarsely: take more elements or a higher degree";
 }
 
+/// A window of all elements keeps its last iterate, and so numbers beyond where it has failed.
 std::string kept_of(const Run& run, double end)
 {
     const bool is_iterate = run.report.n_elements == 0 && end > run.report.failed_at;

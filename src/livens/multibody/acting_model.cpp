@@ -63,6 +63,7 @@ Model frozen(const Model& model, Instant at)
     return now;
 }
 
+/// A load that was made for other times is made anew from the load that it is whenever it acts.
 Model as_decided(const Model& model, const DecidedTimes& times)
 {
     Model now = model;
@@ -87,6 +88,8 @@ Model as_decided(const Model& model, const DecidedTimes& times)
     return now;
 }
 
+/// Joints are numbered anew, as they act. Loads stay all: whether one acts is part of its functions (see
+/// for_its_time()). A reaction of a joint that does not act has the joint -1.
 ActingModel acting_at(const Model& model, double t)
 {
     ActingModel acting{Model(model.gravity()), {}, {}};
@@ -118,6 +121,7 @@ ActingModel acting_at(const Model& model, double t)
     return acting;
 }
 
+/// Known by the joints that act and not by the instant: phases in which the same joints act share a model.
 std::shared_ptr<const ActingModel> ActingModels::at(double t)
 {
     std::vector<int> joints;

@@ -56,6 +56,7 @@ AddedParts Model::add(const Model& other, const std::string& prefix, const Displ
         prefix, {by.position, project_directors(by.rotation)}, first.body, first.load, [&](int j) {
             return j + first.joint;
         }};
+    // each of these kinds refers to parts of those before it
     for (const Body& body : other.bodies_) all.add_body(relocated(body, to));
     for (const NamedPoint& point : other.points_) all.add_point(relocated(point, to));
     for (const Joint& joint : other.joints_) all.add_joint(relocated(joint, to));

@@ -147,6 +147,8 @@ RowBodies row_bodies(const ConstraintRow& row)
     return found;
 }
 
+/// X tells rows that count turns up to a period, of which the value nearest to zero is the one (theory.md,
+/// "Coordinates of joints", Angles).
 double constraint_value(const ConstraintRow& row, Instant at, const Configurations& X)
 {
     double phi = form_value(row, row.body_i, row.body_j, X);
@@ -217,6 +219,7 @@ Matrix<12, 12> constraint_hessian(const ConstraintRow& row, Instant at, const Co
     return H;
 }
 
+/// Nothing is taken off by periods here: inside of elements rows are followed from node to node.
 double constraint_change(const ConstraintRow& row, Instant from, const Configurations& X_from, Instant to,
                          const Configurations& X, const Configurations& step)
 {

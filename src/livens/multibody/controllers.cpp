@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// States z as velocities of point masses without weight, three of them one body: theory.md, "States". A state
+// has a unit, the velocity (m/s) of its body where it is one; rates of states are forces.
 #include "livens/multibody/controllers.h"
 
 #include <algorithm>
@@ -113,6 +115,7 @@ bool acts_on_states(const Model& model, const Load& load)
     return body != world && model.bodies()[static_cast<std::size_t>(body)].holds_states();
 }
 
+/// The velocity along a state's axis, over its unit, is its value.
 std::vector<NamedState> states_in(const Model& model, std::span<const Matrix34> V)
 {
     std::vector<NamedState> all;

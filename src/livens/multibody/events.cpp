@@ -49,6 +49,7 @@ std::vector<double> Sampling::instants() const
     return all;
 }
 
+/// All values are asked before any state changes, which the others must not see.
 void change_states(const Load& load, const StateChange& change, Instant at, std::span<const Matrix34> X,
                    std::span<const double> angles, std::vector<Matrix34>& V)
 {
@@ -106,6 +107,7 @@ Load watching(const Event& event, const ReactionsAt& reactions, int n_bodies, co
     for (const LoadCoordinate& coordinate : watched.coordinates)
         for (const int body : coordinate.bodies())
             if (body != world && std::ranges::find(bodies, body) == bodies.end()) bodies.push_back(body);
+    // Reactions follow from the state of all bodies; a condition of time alone needs a body all the same.
     if (!event.terms.reactions.empty() || bodies.empty()) {
         bodies.clear();
         for (int b = 0; b < n_bodies; ++b) bodies.push_back(b);
@@ -146,6 +148,9 @@ struct Gate {
 
 }   // namespace
 
+/// Where it does not act its forces and slopes are zero, also those of a law inside of elements; directions
+/// of products stay, as they are no forces. It has no potential of its own: what it stores comes and goes
+/// with it, so that all of its power is counted as work.
 Load for_its_time(const Load& load)
 {
     const Gate gate{load.spans()};

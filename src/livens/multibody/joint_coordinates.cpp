@@ -62,6 +62,7 @@ Value displacement_at(double factor, double q)
     return value;
 }
 
+/// 1 - s^2 as a product, which keeps its digits near +-1.
 Value arc_sine_at(double s)
 {
     const double square = (1 - s) * (1 + s), c = std::sqrt(square);
@@ -119,6 +120,8 @@ PairForm sum_of(PairForm form, const PairForm& more)
 }
 
 /// s1, s2, s3, the sine times the axis of the turn between two triads, and c, its cosine.
+/// Of R = A^T B, R_lm = a_l . b_m: s_k = 1/2 (R_ml - R_lm) with k, l, m as x, y, z go round, and c = 1/2 (tr
+/// R - 1).
 std::array<PairForm, 4> sine_and_cosine(int first, int second, const TriadPair& triads)
 {
     const auto product = [&](int k, int l, double factor) {
@@ -147,6 +150,8 @@ JointCoordinate angle_between(int body_i, const Vector4& a1, const Vector4& a2, 
     return {{inner_product_row(body_i, a1, body_j, b, 0, 1), inner_product_row(body_i, a2, body_j, b, 0, 1)}};
 }
 
+/// a1 . b1 + a2 . b2 and a2 . b1 - a1 . b2, which are twice cosine and sine of a turn about a1 x a2; the
+/// factor does not change their angle.
 JointCoordinate turn_between(int body_i, const Vector4& a1, const Vector4& a2, int body_j, const Vector4& b1,
                              const Vector4& b2)
 {
@@ -234,6 +239,7 @@ double coordinate_rate(const JointCoordinate& q, std::span<const Matrix34> X, st
     return rate;
 }
 
+/// Of an angle by sine and cosine of the change itself, (-pi, pi]: no jump of either angle comes in.
 double coordinate_change(const JointCoordinate& q, std::span<const Matrix34> from,
                          std::span<const Matrix34> to)
 {

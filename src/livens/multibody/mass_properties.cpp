@@ -240,6 +240,7 @@ MassProperties cone(double density, double radius, double height)
     return {mass, {}, diagonal(across, across, 3 * mass * radius * radius / 10)};
 }
 
+/// The density changes and the shape does not: moments go with the mass.
 MassProperties with_mass(MassProperties properties, double mass)
 {
     if (!(properties.mass > 0))

@@ -13,6 +13,8 @@ namespace livens {
 
 namespace {
 
+/// With e_0 of both bodies: K stays, B' = R B - p e_0^T K and c' = c + 1/2 (e_0^T K e_0) |p|^2 - p . (R B
+/// e_0).
 QuadraticForm displaced(const QuadraticForm& form, const Displacement& by)
 {
     const Vector3& p = by.position;
@@ -101,6 +103,7 @@ private:
 };
 
 /// A function of arguments alone, asked with what it sees.
+/// Values of such functions are numbers, which no displacement changes.
 template <class Result, class... More>
 void look(std::function<Result(const LoadArguments&, More...)>& function, const SeenFrom& seen)
 {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Rotors as coordinates of points, x_k = rho_k q_k with m rho_k^2 = a_k: theory.md, "Inertia along
+// coordinates".
 #include "livens/multibody/rotors.h"
 
 #include <algorithm>
@@ -141,6 +143,9 @@ Vector3 rotor_turning(const Model& model, std::span<const Rotor> rotors, std::sp
     return sum;
 }
 
+/// Points and their rows stand behind those of the model, whose numbers stay. A point's mass is that of the
+/// largest of its rotors, for which rho is the model's length along angles and 1 along displacements; axes
+/// that no rotor has are held where they are.
 WithRotors::WithRotors(const Model& model)
     : whole_(model.gravity()), n_bodies_(model.n_bodies()),
       n_joints_(static_cast<int>(model.joints().size())), n_rows_(model.n_rows())
@@ -199,6 +204,7 @@ WithRotors::WithRotors(const Model& model)
     for (const Sampling& sampling : model.samplings()) whole_.add_sampling(sampling);
 }
 
+/// Places are as X tells them, up to whole turns, which their rows do not know either.
 State WithRotors::with(const State& state) const
 {
     State all = state;

@@ -38,6 +38,7 @@ Sensor point_sensor(const std::string& name, int body, const Vector3& point, con
             components_of(coincidence_rows(world, livens::point({}), body, livens::point(point), 1), X)};
 }
 
+/// The second point in axes of the first body, which turn with it: rates are those that are seen from there.
 Sensor relative_sensor(const std::string& name, int first, const Vector3& point_first, int second,
                        const Vector3& point_second, const Configurations& X)
 {

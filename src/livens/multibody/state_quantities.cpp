@@ -68,6 +68,7 @@ void take_energies(const Model& model, const std::string& name, int b, std::vect
 }
 
 /// That of all bodies, with what loads store. Throws where a load's depends on more than places.
+/// It has copies of all that it needs, so that it may outlive the model.
 StateQuantity energy_of(const Model& model)
 {
     struct All {
@@ -158,6 +159,7 @@ double value_here(const StateQuantity& quantity, Bodies stated, Bodies X, Bodies
 
 }   // namespace
 
+/// Rodrigues' formula, 1 + sin a K + (1 - cos a) K^2, for all columns.
 Matrix34 turned_rate(const AxisTurn& by, const Matrix34& V)
 {
     const Matrix3 K = cross_matrix((1 / norm(by.axis)) * by.axis);
@@ -165,6 +167,7 @@ Matrix34 turned_rate(const AxisTurn& by, const Matrix34& V)
     return V + (std::sin(by.angle) * K + 2 * half * half * (K * K)) * V;
 }
 
+/// The axis need not pass the origin: the reference point turns about a point of it, directors turn alone.
 Matrix34 turned(const AxisTurn& by, const Matrix34& X)
 {
     Matrix34 from_axis = X;

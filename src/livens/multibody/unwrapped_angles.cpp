@@ -9,6 +9,7 @@
 
 namespace livens {
 
+/// A form by numbers of X, 12 a body, without what is zero: it is asked all along a motion.
 UnwrappedAngles::Terms::Terms(const PairForm& form) : constant(form.c)
 {
     const auto add = [this](int x, int y, double factor) {

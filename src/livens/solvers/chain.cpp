@@ -78,6 +78,8 @@ void ChainSolver::take_room()
     work_.right_side.assign(static_cast<std::size_t>(std::max(size_of(*structure_), n_rows)), 0.0);
 }
 
+/// What passes between two elements, sigma, is one number for each row of their node, and nothing at the ends
+/// of time: rows of the first node are all the first element's.
 void ChainSolver::shape(int e)
 {
     const BlockStructure& s = *structure_;
@@ -111,6 +113,8 @@ void ChainSolver::take_room(Link& link, int n_left)
 }
 
 /// Rows: its own, then those of its near and of its far end.
+/// sigma enters rows of the near end and leaves those of the far end. Its columns are as large as the entries
+/// of the element before it, so that growth is measured by one size.
 void ChainSolver::fill_inside(int e)
 {
     Link& link = links_[static_cast<std::size_t>(e)];
@@ -198,6 +202,7 @@ bool ChainSolver::condense(Link& link, int e)
     return is_done;
 }
 
+/// No rows are preferred: pivots come from those of both.
 bool ChainSolver::merge(int e)
 {
     Link& link = links_[static_cast<std::size_t>(e)];

@@ -68,6 +68,7 @@ thread_local CrewMembers* present = nullptr;
 
 }   // namespace
 
+/// Inside another crew of as many threads it is that one; threads start with the first loop that is divided.
 Crew::Crew(int n_threads) : outer_(present)
 {
     if (n_threads < 2 || (present != nullptr && present->wanted == n_threads)) return;
@@ -154,6 +155,7 @@ void CrewMembers::run(int n, int least, const Share& share)
         ++round;
     }
     begins.notify_all();
+    // loops inside of a share are not divided again
     CrewMembers* const own = std::exchange(present, nullptr);
     do_share(0);
     present = own;
@@ -183,6 +185,7 @@ public:
         n_first = static_cast<int>(share * n);
     }
 
+    /// Whoever awaits the item sees all that was written before its end.
     void end(int item) { is_done_[item].store(true, std::memory_order_release); }
     /// False: it is broken off.
     bool await(int item)

@@ -221,6 +221,8 @@ private:
     int row(int node) const { return first_row_[static_cast<std::size_t>(node)]; }
     int unknown(int node) const { return first_unknown_[static_cast<std::size_t>(node)]; }
 
+    /// Known at the start, an element has the rows of its first node and the unknowns of its last one, beside
+    /// what is inside; mirrored, the other way round.
     void shape(const BlockStructure& structure, int e)
     {
         const auto [first, last] = structure.elements[static_cast<std::size_t>(e)];

@@ -270,6 +270,8 @@ void OrthogonalBasis::solve_R_transposed(double* y) const
     }
 }
 
+/// Q times the last n - k columns of the identity, by reflections in the opposite order. Row j of z is zero
+/// until reflection j, so that one product is enough for it.
 void OrthogonalBasis::null_space(double* z) const
 {
     const int f = n_ - k_;

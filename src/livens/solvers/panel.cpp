@@ -82,6 +82,8 @@ Panel::Candidate Panel::candidate(int k, bool first_alone) const
 }
 
 /// `best` is the largest of the column.
+/// Preferred rows are an element's own, which keeps what passes between elements out (theory.md, "The
+/// chain").
 bool Panel::choose_pivot(int k, const Candidate& best)
 {
     failed_ = k;   // stays so if this is the last
@@ -157,6 +159,8 @@ void Panel::subtract(int first, int last, std::pair<int, int> of, int from)
     for (int i = first; i < last; ++i) reach_[i] = std::max(reach_[i], behind);
 }
 
+/// Four pivots at a time: in their own columns, then in those behind, where each pivot row is finished by the
+/// pivots before it, and all rows below by the four together.
 bool Panel::eliminate(int n_first, int reach)
 {
     beta_.clear();
@@ -173,6 +177,9 @@ bool Panel::eliminate(int n_first, int reach)
     return true;
 }
 
+/// The diagonal takes the sign that adds in v_0 = a_kk - diagonal, so that no digits are lost; with v_k = 1
+/// it is beta = 2 / v^T v = -v_0 / diagonal. Squares are of entries over the largest one, and cannot
+/// overflow.
 bool Panel::reflect_column(int k)
 {
     double square = 0, largest = 0;

@@ -27,6 +27,7 @@ void Ranks::pass_on(std::span<const double> values)
     if (!is_last()) send(rank() + 1, values);
 }
 
+/// Along a binary tree: in each round whoever has the numbers sends them to one more.
 void Ranks::broadcast(int from, std::span<double> values)
 {
     const int n = size(), place = (rank() - from + n) % n;   // as if it came from the first
@@ -38,6 +39,7 @@ void Ranks::broadcast(int from, std::span<double> values)
     }
 }
 
+/// Along a binary tree to the first rank, which sends the outcome to all: everyone has the same bits.
 void Ranks::reduce(std::span<double> values, double (*join)(double, double))
 {
     std::vector<double> others(values.size());
@@ -53,6 +55,7 @@ void Ranks::reduce(std::span<double> values, double (*join)(double, double))
     broadcast(0, values);
 }
 
+/// A nan on the left stays, as no comparison with it is true; one on the right is asked for.
 void Ranks::largest(std::span<double> values)
 {
     reduce(values, [](double a, double b) { return b > a || std::isnan(b) ? b : a; });
@@ -76,6 +79,7 @@ std::vector<double> Ranks::sum_before(std::span<const double> values)
 std::unique_ptr<RankChain> Ranks::make_chain() { return std::make_unique<GatheredChain>(*this); }
 
 /// Of the first rank: the matrix, and which of its unknowns each rank wants.
+/// It is solved as one stretch along time, and by the general LU where pivots of that are too small.
 struct GatheredChain::Whole {
     std::vector<std::vector<int>> columns;
     std::vector<int> n_rows;
@@ -102,6 +106,8 @@ GatheredChain::GatheredChain(Ranks& ranks) : ranks_(ranks)
 
 GatheredChain::~GatheredChain() = default;
 
+/// Sizes and numbers of columns travel as doubles, which hold them exactly. Ranks have their rows one after
+/// the other. All learn whether it is done, also where rows and unknowns are not as many.
 bool GatheredChain::factorise(const ChainRows& own)
 {
     n_own_ = static_cast<std::size_t>(own.n_rows());

@@ -20,6 +20,8 @@ constexpr int several = -1;               // whose column it is
 constexpr int least_shared_rows = 1000;   // that a thread copies
 
 /// The pattern row by row, and where their entries stand in the matrix.
+/// A thread goes through all columns and takes the entries of its rows: each row is filled by one thread, in
+/// the order of columns.
 void take_rows(const SparseMatrix& A, StoredRows& rows, std::vector<int, AsItComes<int>>& places)
 {
     rows.starts.assign(static_cast<std::size_t>(A.size) + 1, 0);
@@ -113,6 +115,7 @@ void StaircaseLU::analyse(const SparseMatrix& A, std::span<const int> cuts)
     values_.assign(static_cast<std::size_t>(size_), 0.0);
 }
 
+/// A stretch is one thread's, so that no sum depends on how many there are.
 bool StaircaseLU::factorise(const SparseMatrix& A)
 {
     assert(A.size == size_ && A.values.size() == parts_->places.size());

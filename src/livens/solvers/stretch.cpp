@@ -27,6 +27,7 @@ constexpr double least_pivot = 1e-10;
 
 }   // namespace
 
+/// The window is a power of two: slots are the last bits of column numbers, and go on without any copies.
 void Front::resize(int window, int n_kept)
 {
     window_ = window;
@@ -40,6 +41,7 @@ void Front::resize(int window, int n_kept)
     holders_.assign(static_cast<std::size_t>(window), 0);
 }
 
+/// Places of rows that have left are taken first, so that there are as many as ever stand in it at once.
 int Front::take()
 {
     if (free_.empty()) {
@@ -181,6 +183,8 @@ int Stretch::choose(int k)
 }
 
 /// Of a pivot row, without the pivot.
+/// A run ends at the pivot's slot, where the window has its last column beside its first one, and at the
+/// window's end: behind either its columns would not follow each other.
 void Stretch::find_runs(int k, const std::uint64_t* bits)
 {
     const int here = front_.slot(k), n = n_own(), window = front_.window();
@@ -339,6 +343,7 @@ void Stretch::forward(double* y) const
     }
 }
 
+/// Two sums, of even and of odd terms: neither has to wait for the addition of the other.
 void Stretch::backward(const double* y, double* x) const
 {
     const std::size_t n = pattern_.own.size();

@@ -131,6 +131,8 @@ double Curve::product(std::span<const double> a, std::span<const double> b) cons
     return sum / (std::max(n, 1) * static_cast<double>(bodies.size()));
 }
 
+/// dq/ds = -J^-1 dR/ds, with rows at shares on both sides of this one and nodes held: the difference of what
+/// both ask for as increments.
 bool Curve::factorise()
 {
     formed_ = now_;
@@ -205,6 +207,7 @@ double Curve::distance() const
     return far;
 }
 
+/// Where it is not found the curve stands where it stood.
 int Curve::go(double step)
 {
     const Shared before = kept_;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// theory.md, "Unknown numbers": Errors; "An accuracy between both ends" says which element ends stay.
 #include "livens/spacetime/found.h"
 
 #include <algorithm>
@@ -62,6 +63,7 @@ std::shared_ptr<const Stated> stated_with(const std::shared_ptr<const Stated>& s
         Stated{rebuilt.model, std::move(problem), std::move(*tried.ends), std::move(span)});
 }
 
+/// By the guessed size at least: a number that is found to be zero has no digits of its own.
 NumberError error_of_numbers(const UnknownNumbers& stated, const FoundNumbers& found)
 {
     NumberError worst;
@@ -76,6 +78,7 @@ NumberError error_of_numbers(const UnknownNumbers& stated, const FoundNumbers& f
     return worst;
 }
 
+/// Output times that no instant that is found may come near, by its error.
 std::vector<double> held_outputs(const Stated& stated, double error)
 {
     if (stated.problem.unknowns.is_empty() || !std::isfinite(error)) return {};

@@ -196,6 +196,8 @@ double missing(const Model& model, const Guess& motion, const State& known, Know
 
 }   // namespace
 
+/// One end a turn, ends that move first. Of an end at rest there may be a second march, with the rates of the
+/// other end; the one that arrives nearer comes first.
 std::vector<GuessFromEnds> guesses_from_ends(const Model& model, const Ends& ends, const GuessMesh& mesh,
                                              int turn)
 {
@@ -233,6 +235,7 @@ std::vector<GuessFromEnds> guesses_from_ends(const Model& model, const Ends& end
     return guesses;
 }
 
+/// Sizes in equal ratios. Marches of the few that are tried are made again, or all of them would be kept.
 std::vector<GuessFromEnds> nearest_marches(const Model& model, const Ends& ends, const GuessMesh& mesh)
 {
     constexpr int n = 40, most = 4;   // of marches, and of those that are tried

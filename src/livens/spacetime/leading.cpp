@@ -116,6 +116,8 @@ private:
     }
 
     /// Where joints close.
+    /// Places that are led are moved by steps and turns, and closed; momenta and values of conditions go
+    /// linearly from those of the arrival (LedEnds).
     std::optional<Ends> ends_at(double share) const
     {
         if (ends_.has_components()) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// theory.md, "Conditions by component": Momenta, Periodic motions.
 #include "livens/spacetime/other_motions.h"
 
 #include <algorithm>

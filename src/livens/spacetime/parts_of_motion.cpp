@@ -19,6 +19,9 @@ namespace {
 constexpr double far_from_guess = 0.05;   // as a march compares itself with its guess
 
 /// Balances go on from the parts before, and their figures are those of all parts.
+/// Work and impulses (7 numbers) are summed over the parts before, drifts made anew against the start of time
+/// (8 numbers of the first rank). Figures are the largest of all ranks, but for the references of impulse and
+/// moment, which are sums.
 void join_balances(Balance& part, BalanceFigures& figures, Ranks& ranks)
 {
     const std::size_t last = part.t.size() - 1;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// theory.md, "Phases between conditions": Guesses.
 #include "livens/spacetime/planned_phases.h"
 
 #include <algorithm>
@@ -29,6 +30,7 @@ bool has_no_rates(const State& state)
 
 }   // namespace
 
+/// Joints that begin take off whatever is in their way, however large: a guess need not meet them.
 Guess march_over_phases(const Model& model, const State& start, const TimeMesh& mesh, int degree)
 {
     SolveOptions options;
@@ -92,6 +94,7 @@ const std::vector<Matrix34>& PlannedPhases::steady_rates()
     return rates_;
 }
 
+/// The first phase begins as stated, others where the motion is by then, closed by the joints that act.
 void PlannedPhases::make_plan(const Guess& motion)
 {
     const Model& model = numbered_.model();

@@ -167,6 +167,8 @@ private:
 
 }   // namespace
 
+/// Each start has one march, which is bent to the other end and solved by plain iteration: no other guess is
+/// tried and nothing is led, so that a start costs little where it leads nowhere.
 Solution with_roots(const Model& model, const Problem& problem, const Time& time, const Method& method,
                     const SolveOptions& options, Solution first)
 {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// theory.md, "Inertia along coordinates".
 #include "livens/spacetime/rotating.h"
 
 #include <string>
@@ -11,6 +12,7 @@ namespace livens::inline spacetime_internal {
 
 namespace {
 
+/// Of each `of` values the first `wanted`: those of the model come before those of its points.
 void keep_first(std::vector<double>& values, int wanted, int of)
 {
     if (values.empty() || of == 0) return;

@@ -71,6 +71,7 @@ std::vector<double> missed_with(const NumberedProblem& problem, const std::vecto
 
 }   // namespace
 
+/// What cannot be tried (no model, no march) is not refused: it may show.
 std::optional<Complaint> why_unseen(const NumberedProblem& problem)
 {
     if (problem.size() == 0) return {};

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What the search for an equilibrium does at one configuration: forces of the mechanism at rest, principal
+// stiffnesses of what joints leave free, and where a step leads with the joints closed (docs/theory.md,
+// "Equilibrium").
 #include "livens/statics/equilibrium_search.h"
 
 #include <algorithm>
@@ -20,6 +23,7 @@ namespace {
 
 using Values = std::vector<double>;
 
+/// Without stops: all joints act, and rows keep their numbers.
 ActingModel all_of(const Model& model)
 {
     ActingModel all{model, std::vector<int>(model.joints().size()),
@@ -42,6 +46,7 @@ Search::Search(const HeldAtRest& held, const ConsistentStart& closed)
 {
     state_.resize(tables_);
     State start = closed.start;
+    // Loads that watch stops come behind the model's own, and their angles have not turned yet.
     if (held.stops->size() > 0)
         start.angles.resize(start.angles.empty() ? 0 : tables_.loads.turns.size(), 0.0);
     state_.angles = tables_.loads.turns.begin(start);
@@ -53,6 +58,7 @@ Search::Search(const HeldAtRest& held, const ConsistentStart& closed)
         }
 }
 
+/// At rest: only what holds states has velocities, which are these states.
 bool Search::look(std::vector<Matrix34> X, RestPoint& point)
 {
     point.X = std::move(X);
@@ -64,6 +70,7 @@ bool Search::look(std::vector<Matrix34> X, RestPoint& point)
     follow_joints(point.X);
     if (!instant_.prepare(state_, tables_.independent)) return false;
     instant_.accelerate(state_, Side::right);
+    // Kept here, since Statics sets it to zero.
     acceleration_ = state_.acceleration[1];
     instant_.add_basis(state_);
     point.maps = state_.maps;
@@ -111,6 +118,7 @@ void Search::add_stiffness(RestPoint& point) const
     point.stiffness = principal.values;
     point.directions = product(statics.free.Z, principal.vectors);
     point.forces = transposed_product(point.directions, statics.rows);
+    // Where it is rounding of the terms of K it is left out, and steps go direction by direction.
     const DenseMatrix skew = skew_part(K);
     point.skew = {};
     if (largest_size(skew.a) > 1e-13 * point.scale)
@@ -133,6 +141,8 @@ bool Search::move(const RestPoint& from, const Values& step, std::vector<Matrix3
     return move_by(from, xi, X);
 }
 
+/// Bodies move by finite translations and turns; a step of Newton's for the polar factor takes rounding off
+/// directors, and joints are closed behind it.
 bool Search::move_by(const RestPoint& from, const Values& xi, std::vector<Matrix34>& X) const
 {
     X = from.X;

@@ -18,6 +18,7 @@ double RateBounds::springs(const State& state) { return std::sqrt(largest(state,
 
 double RateBounds::dampers(const State& state) { return largest(state, Slopes::by_V); }
 
+/// Infinite where an inertia is singular: in scaled twists M is then not the identity, and this is no bound.
 double RateBounds::largest(const State& state, Slopes slopes)
 {
     if (!tables_.bodies.are_regular()) return std::numeric_limits<double>::infinity();
@@ -57,6 +58,7 @@ void RateBounds::add(int l, const State& state, Slopes slopes)
         }
 }
 
+/// A block g s^T with the slope s is of rank one: its Frobenius norm is that of g times that of s.
 void RateBounds::add_damper(const Load& load, const ProductSlopes& slopes, const double* X)
 {
     const auto size = [&](int b, const Matrix34& g) {
@@ -72,6 +74,7 @@ void RateBounds::add_damper(const Load& load, const ProductSlopes& slopes, const
         }
 }
 
+/// Half in the row of either body: the block and its transpose are halves of the symmetric part.
 void RateBounds::add_size(int i, int j, double size)
 {
     sums_[i] += 0.5 * size;

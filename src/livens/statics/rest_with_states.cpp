@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// At rest the rates of states are zero as forces on bodies are; both are found together (docs/theory.md,
+// "States", last paragraph).
 #include "livens/statics/rest_with_states.h"
 
 #include <algorithm>
@@ -20,6 +22,8 @@ class RestWithStates {
 public:
     RestWithStates(Search& search, const EquilibriumOptions& options) : search_(search), options_(options) {}
 
+    /// Steps are measured in lengths of the model, rad and sizes of states. One of 1e-13 is rounding; below
+    /// 1e-9 it is a rest where steps do not halve any more.
     SearchOutcome run(RestPoint& here, int& iterations)
     {
         constexpr double met = 1e-13, near = 1e-9, least_share = 1e-6;
@@ -40,6 +44,7 @@ public:
             for (;; share *= 0.5) {
                 if (share < least_share)
                     return whole.size <= near ? SearchOutcome::balanced : SearchOutcome::stuck;
+                // 1 - share / 4: the test of docs/theory.md, "Newton's iteration".
                 if (go(here, whole, share, there) &&
                     step_of(there, here, tangent).size <= (1 - 0.25 * share) * whole.size)
                     break;
@@ -56,6 +61,8 @@ private:
     };
 
     /// Columns of what holds states are those of C: forces by velocities.
+    /// (A e - K e) e^T puts A e where K e was; directions that no state uses get e itself, so that the
+    /// matrix is regular.
     DenseMatrix tangent_at(const RestPoint& at) const
     {
         const FreeMotions& free = at.statics->free;

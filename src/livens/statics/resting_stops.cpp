@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Which stops hold a rest, by what they push with: docs/theory.md, "Equilibrium", Stops.
 #include "livens/statics/resting_stops.h"
 
 #include <algorithm>
@@ -29,6 +30,7 @@ const Event* closing(const Model& model, int joint)
 /// In units of force or of torque, whichever is more: what is smaller is none.
 double noise_of(std::span<const double> given, double length)
 {
+    // Of 12 numbers a body the first three are forces, N; those on directors are N m.
     double forces = 0, torques = 0;
     for (std::size_t k = 0; k < given.size(); ++k) ((k % 12) < 3 ? forces : torques) += std::abs(given[k]);
     return no_force * std::max({forces, torques, forces * length, torques / length});
@@ -45,6 +47,7 @@ RestingStops::RestingStops(const Model& whole, double t) : whole_(whole), t_(t)
         }
 }
 
+/// As if events had decided: a closed stop acts at all times, an open one at none.
 ActingModel RestingStops::holding(const std::vector<int>& closed) const
 {
     DecidedTimes times;
@@ -64,6 +67,7 @@ ActingModel RestingStops::watching(const std::vector<int>& closed) const
     const State stated = whole_.start();
     for (const Event* event : closings_) {
         Load watch = livens::watching(*event, {}, whole_.n_bodies(), Configurations(stated.X));
+        // Names of loads are unique, and a load of the model may be called as the event is.
         while (std::ranges::any_of(held.model.loads(), [&](const Load& l) { return l.name == watch.name; }))
             watch.name += "'";
         held.model.add_load(std::move(watch));
@@ -71,6 +75,7 @@ ActingModel RestingStops::watching(const std::vector<int>& closed) const
     return held;
 }
 
+/// By the guards, which are positive beyond a stop. Conditions see bodies at rest: V is zero.
 std::vector<double> RestingStops::depths(const Model& watching, const LoadTables& loads,
                                          std::span<const Matrix34> X, std::span<const double> angles) const
 {
@@ -96,6 +101,7 @@ std::vector<double> RestingStops::depths_near(std::span<const Matrix34> X) const
     return depths(seen.model, loads, X, angles);
 }
 
+/// A row exerts -G^T lambda, and a stop pushes towards its open side, where its row has the sign open_side.
 Pushes RestingStops::pushes(const ActingModel& held, const std::vector<int>& closed,
                             std::span<const Matrix34> X, std::span<const double> multipliers,
                             std::span<const int> independent, std::span<const double> given) const
@@ -139,6 +145,8 @@ void refuse_beyond_stops(const RestingStops& stops, std::span<const double> dept
     }
 }
 
+/// Where stops share what they bear, one at a time is left out and all is solved again, since the shares of
+/// the others change. What is left has reactions of its own, and these have to push.
 std::vector<int> stops_of_rest(const RestingStops& stops, const State& state, Side side)
 {
     std::vector<int> closed;

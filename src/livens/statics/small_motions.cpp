@@ -32,6 +32,7 @@ Matrix<6, 1> times(const Matrix<6, 6>& K, std::span<const double> y)
     return Ky;
 }
 
+/// maps_: plain twists by scaled ones, 6 x 6 a body; columns_: X by scaled twists, 12 x 6. Column by column.
 SmallMotions::SmallMotions(const ModelTables& tables, const InstantState& state, Side side)
     : tables_(tables), state_(state), at_{state.t, side}
 {
@@ -106,6 +107,7 @@ void SmallMotions::add_constraints(TwistTerms& terms) const
     }
 }
 
+/// The identity, unless an inertia is singular: coordinates are then those of a larger one, and m is not.
 void SmallMotions::add_mass(TwistTerms& terms) const
 {
     for (int b = 0; b < tables_.n_bodies(); ++b) {
@@ -127,6 +129,7 @@ TwistTerm SmallMotions::term(int source, const Matrix<12, 12>& K, double factor,
             congruence(std::abs(factor), sizes_of(left), sizes_of(K), sizes_of(right))};
 }
 
+/// Weight and loads less X'' m, 12 numbers a body.
 std::vector<double> SmallMotions::forces_less_inertia(int side) const
 {
     std::vector<double> V(state_.X.size()), A(V.size()), r(V.size());
@@ -170,6 +173,7 @@ DenseMatrix FreeMotions::reduced(const ModelTables& tables, const TwistTerms& te
     return transposed_product(Z, KZ);
 }
 
+/// The diagonal of |Z|^T |K| |Z|: what terms of Z^T K Z add up to where none of them cancel.
 std::vector<double> FreeMotions::sizes(const ModelTables& tables, const TwistTerms& terms) const
 {
     DenseMatrix z = Z;
@@ -222,6 +226,7 @@ StateDirections::StateDirections(const ModelTables& tables, const FreeMotions& f
             e[k] = 1;
             for (int again = 0; again < 2; ++again)
                 for (const Vector3& one : taken) e -= dot(one, e) * one;
+            // Of any direction some axis has at least 1 / sqrt(3): enough of them pass.
             if (norm(e) < 0.5) continue;
             taken.push_back((1 / norm(e)) * e);
             of_idle.push_back({first, taken.back()});
@@ -250,6 +255,7 @@ PreparedState::PreparedState(const Model& model, const State& given, Side side, 
 PreparedState::PreparedState(const Model& model, const ConsistentStart& closed, Side side, bool by_basis)
     : tables(model, closed.independent)
 {
+    // Many freedoms have a projection along the joints in place of a basis: theory.md, "Highest frequencies".
     const bool is_sparse = !by_basis && tables.freedoms() > many_freedoms && JointFactor::serves(tables) &&
                            tables.rows.are_quadratic();
     InstantSystem instant(tables, is_sparse);

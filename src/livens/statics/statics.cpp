@@ -81,6 +81,7 @@ void Statics::add_levels(const ModelTables& tables, const InstantState& state)
         const double moved = largest_displacement(tables, free.twists(tables, state, k).data()),
                      size = of_stiffness[static_cast<std::size_t>(k)];
         largest_stiffness = std::max({largest_stiffness, size, 1e-2 * on_bodies * moved});
+        // At least what terms of the stiffness do over 1e-5 lengths or rad: loads may be zero here.
         level = std::max(level, size * 1e-5 / moved);
     }
     for (const double size : free.sizes(tables, damping)) largest_damping = std::max(largest_damping, size);

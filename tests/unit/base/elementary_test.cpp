@@ -37,6 +37,24 @@ TEST(Elementary, LargeAnglesKeepTheirDigits)
     EXPECT_TRUE(std::isnan(sine_cosine(std::numeric_limits<double>::quiet_NaN()).cosine));
 }
 
+/// Beside zeros of both, where digits cancel, and on both sides of the last angle that is reduced here.
+TEST(Elementary, TurnsAreTakenOffWithoutLosingDigits)
+{
+    const auto look = [](double x) {
+        const auto [s, c] = sine_cosine(x);
+        const long double wide = x;
+        ASSERT_LE(std::abs(static_cast<double>(s - std::sin(wide))), unit(s)) << x;
+        ASSERT_LE(std::abs(static_cast<double>(c - std::cos(wide))), unit(c)) << x;
+    };
+    for (int k = 1; k < 640000; k += 1 + k / 1000) {
+        const double zero = k * 1.5707963267948966;
+        for (const double x : {zero, std::nextafter(zero, 0), -zero, zero + 0.7853981633974483, zero - 0.3})
+            look(x);
+    }
+    for (const double x : {0.8, 0.80000001, -0.80000001, 999999.9, 1e6, -1e6, 1000000.1, 1e15, -1e300})
+        look(x);
+}
+
 TEST(Elementary, InversesUndoThem)
 {
     for (const double angle : {-3.1, -1.5, -1e-9, 0.3, 0.75, 2.9}) {

@@ -197,6 +197,8 @@ Alternation SampleSeries::worst(int window) const
 
 /// Alternating part of n samples against all of them, or against `floor` or what is noise if that is more. An
 /// alternating g has second differences 4 g.
+/// Second differences of a wave that turns by theta a step are 4 sin^2(theta / 2) of it, so that the root of
+/// the squares' ratio over 16 is sin^2(theta / 2): 1 where it alternates.
 Alternation SampleSeries::worst_of(const Squares& part, std::size_t n, double floor,
                                    const std::vector<double>& steps) const
 {

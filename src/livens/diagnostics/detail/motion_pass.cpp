@@ -16,6 +16,7 @@ namespace livens::inline diagnostics_internal {
 
 namespace {
 
+/// Points of several elements fill a batch; only the last batches of an advance may be part empty.
 constexpr int elements_at_once = 32;
 
 Supply supply_at(const SupplyOfPoints& of, int lane, const Supply* rest)
@@ -33,6 +34,7 @@ Supply supply_at(const SupplyOfPoints& of, int lane, const Supply* rest)
 
 }   // namespace
 
+/// Rational fields, momenta of their own, rotors and potentials of loads are left to the rule of action().
 bool has_own_integrals(const Model& model, const Motion& motion)
 {
     const bool is_exact = motion.gauss_points >= motion.X.degree ||
@@ -110,6 +112,8 @@ void MotionPass::Stretch::advance()
     for (std::size_t i = 0; i < sets_.size(); ++i) flush(sets_[i].roles(), batches_[i]);
 }
 
+/// Loads are looked at for all points of the element at once. Their stiffness has sizes alone: it adds to
+/// what rounding is relative to, and supplies nothing.
 void MotionPass::Stretch::visit(const MotionPoints& set, PointBatch& batch, int element)
 {
     const PointRoles& roles = set.roles();
@@ -195,6 +199,7 @@ void MotionPass::Stretch::flush_nodes(PointBatch& batch)
     }
 }
 
+/// Kernels tell the largest of all rows, not which row it is: that is asked for a new largest one alone.
 void MotionPass::Stretch::raise_joints(PointBatch& batch, int lane, double at_point)
 {
     if (!raise_to(figures.violations.joints_at_nodes, at_point)) return;
@@ -214,6 +219,7 @@ void MotionPass::Stretch::flush_rates(PointBatch& batch)
     batch.clear();
 }
 
+/// Rates of rows are those of velocities at element ends, which belong to momenta: polynomials have others.
 void MotionPass::Stretch::finish()
 {
     while (end_ < motion_.n_elements()) advance();

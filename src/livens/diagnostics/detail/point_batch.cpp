@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Rows that are no quadratic forms are evaluated here, one point at a time; all others wait for the kernels.
 #include "livens/diagnostics/detail/point_batch.h"
 
 #include <algorithm>
@@ -20,6 +21,7 @@ void PointBatch::put(const MotionPoints& set, int k, const LanePoint& point, con
     ++n_;
 }
 
+/// The row exerts -lambda dPhi/dX, and lambda dPhi/dt is the power of its drives (theory.md, "Drives").
 void PointBatch::put_other_row(int r, const MotionPoints& set, int k)
 {
     const RowTable& row = model_.rows[r];
@@ -41,6 +43,7 @@ void PointBatch::put_other_row(int r, const MotionPoints& set, int k)
     others_[n_].work += lambda * constraint_rate(*row.row, at, Configurations(X));
 }
 
+/// With V dPhi/dt = its part by time + dPhi/dX V over the scale, in 1/s; without V Phi over the scale.
 void PointBatch::put_instant(const double* X, const double* V, double t)
 {
     points_[n_] = {0, 0, t, 0};

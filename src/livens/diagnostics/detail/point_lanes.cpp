@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Arrays of the kernels: number k of the point in lane l stands at 4 k + l.
 #include "livens/diagnostics/detail/point_lanes.h"
 
 #include <algorithm>
@@ -39,6 +40,7 @@ OfPoints PointLanes::kinetic_energy()
     return energy;
 }
 
+/// Maxima in registers lose a nan. Where anything was not finite all is looked at again by raise_to().
 OfPoints PointLanes::largest_violation()
 {
     LargestOfPoints found;
@@ -50,6 +52,7 @@ OfPoints PointLanes::largest_violation()
     return largest;
 }
 
+/// Of the rows (P4), 1/2 (d_a . d_b - delta_ab), whose scale is 1.
 OfPoints PointLanes::largest_of_rigidity()
 {
     LargestOfPoints found;

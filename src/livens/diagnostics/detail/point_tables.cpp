@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Rows keep the numbers that the model gives them: one that is no quadratic form has no columns here, by
+// which the kernels pass it over. Bodies that hold states have no mass here (theory.md, "States").
 #include "livens/diagnostics/detail/point_tables.h"
 
 #include <cmath>
 
 namespace livens::inline diagnostics_internal {
 
+/// A row without a form has the gradient B everywhere, of which the numbers that are not zero are enough.
 void PointTables::add_row(const RowTable& row)
 {
     const bool is_linear = row.is_quadratic && row.form.empty();

@@ -131,6 +131,7 @@ void FieldTable::derivatives(int element, int k, double factor, std::span<Matrix
 }
 
 /// From differences of the coefficients; of quotients point by point.
+/// Column 0 of the tables has no part in it: differences are those from node 0.
 void FieldTable::sum_up(int element, int derivative, std::span<const double> d, std::span<double> out) const
 {
     const auto n = static_cast<std::size_t>(field_->n_values);

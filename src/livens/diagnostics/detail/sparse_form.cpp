@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Forms by the few numbers of X that they see: 12 a body, column by column, so that a column is named by its
+// first number, 12 body + 3 column. theory.md, "Joints are quadratic forms" and "Coordinates of joints".
 #include "livens/diagnostics/detail/sparse_form.h"
 
 #include <algorithm>
@@ -7,6 +9,7 @@
 
 namespace livens::inline diagnostics_internal {
 
+/// 1/2 tr(X K X^T) has each block of a body by 1/2, and c_ij, which stands in K twice, by 1.
 SparseForm::SparseForm(const PairForm& form) : constant_(form.c)
 {
     add_products(form.body_j, form.body_j, form.c_jj, 0.5);
@@ -52,6 +55,7 @@ double SparseForm::rate(const double* X, const double* V) const
     return sum;
 }
 
+/// (x . y)'' = x'' . y + x . y'' + 2 x' . y', of which rate() with A in place of V has the first two.
 double SparseForm::acceleration(const double* X, const double* V, const double* A) const
 {
     double sum = 0;
@@ -78,6 +82,7 @@ SmoothFunction::Point SparseCoordinate::forms_at(const double* X) const
     return q;
 }
 
+/// Of an angle by sine and cosine of what it has turned since: the shorter way, in (-pi, pi].
 double SparseCoordinate::change(const double* X) const
 {
     const SmoothFunction::Point q = forms_at(X);

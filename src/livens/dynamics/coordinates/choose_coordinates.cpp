@@ -63,6 +63,7 @@ std::vector<Candidate> candidates_of(const Model& model, const std::vector<std::
 }
 
 /// The model with a row for each rate of the candidates, behind those of its joints.
+/// Only gradients are asked of them: laws are constant, and hold each coordinate where it is at X.
 Model with_rows_of(const Model& model, const std::vector<Candidate>& candidates, std::span<const Matrix34> X)
 {
     Model with = model;
@@ -93,6 +94,7 @@ Model with_rows_of(const Model& model, const std::vector<Candidate>& candidates,
 /// What is free, and who takes it.
 class Choice {
 public:
+    /// What is left are the freedoms of all bodies, less the independent rows of joints.
     Choice(const Model& model, const State& placed, const std::vector<int>& independent,
            const std::vector<std::string>& wanted)
         : all_(candidates_of(model, wanted)), n_left_(-static_cast<int>(independent.size()))
@@ -173,6 +175,7 @@ void take_wanted(Choice& choice, const std::vector<std::string>& wanted)
 }
 
 /// Of bodies, as far as joints' coordinates do not tell: whole places and orientations first.
+/// Then single axes of places; an orientation is taken whole or not at all.
 void take_of_bodies(Choice& choice, const Model& model)
 {
     std::vector<std::vector<Candidate*>> places(model.bodies().size()), turns(places);

@@ -31,6 +31,7 @@ void CoordinateSystem::add_gradient(const ConstraintRow& row, const Configuratio
     add(std::move(entries));
 }
 
+/// By columns, as the sparse LU takes them. A row without a gradient keeps the scale 1.
 void CoordinateSystem::add(std::vector<Entry> entries)
 {
     double square = 0;
@@ -42,6 +43,8 @@ void CoordinateSystem::add(std::vector<Entry> entries)
         if (entry.value != 0) columns_[entry.column].emplace_back(row, scale * entry.value);
 }
 
+/// Rows of joints first, then one for each rate; of a place or a turn it is a single unknown. For least
+/// squares all rows of redundant joints are given: the matrix is not square then, and not factorised.
 CoordinateSystem::CoordinateSystem(const Mechanism& mechanism, const Configuration& X, std::vector<int> rows)
     : mechanism_(mechanism), rows_(std::move(rows)), placed_t_(mechanism.placed.t)
 {
@@ -74,6 +77,7 @@ DenseMatrix CoordinateSystem::entries() const
     return A;
 }
 
+/// Rates are of the rows before these were scaled; of the solution [v, L w] the length is taken off.
 std::vector<double> CoordinateSystem::twists(std::span<const double> rates) const
 {
     std::vector<double> b(rates.begin(), rates.end()), x(b.size());

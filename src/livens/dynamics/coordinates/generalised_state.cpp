@@ -112,6 +112,7 @@ StateParts::StateParts(std::shared_ptr<const Mechanism> the_mechanism, Placed th
         if (m.bodies[b].dofs == 3) continue;
         double spin[6] = {0, 0, 0, 0, 0, 0}, out[12] = {};
         std::copy_n(twists.begin() + m.bodies[b].first + 3, 3, spin + 3);
+        // X' has the columns w x d_a; the spin alone, without v, leaves zero for the place.
         twist::columns(state.V[b].a, spin, out);
         std::copy_n(out, 12, centripetal[b].a);
     }
@@ -196,6 +197,7 @@ std::vector<Matrix34> StateParts::inertia_of(std::span<const double> acceleratio
     return all;
 }
 
+/// J^T N^T (m X'' - F) with X'' = N (J q'' + b) + X''_c: M q'' + h, less the loads.
 std::vector<double> StateParts::less_loads(std::span<const double> accelerations,
                                            std::span<const Matrix34> loads) const
 {
@@ -230,6 +232,7 @@ void StateParts::add_rotors(std::span<const double> accelerations, std::vector<d
     }
 }
 
+/// Work of the momenta of each rate along all others: the upper triangle, and its mirror image.
 DenseMatrix StateParts::mass() const
 {
     const int n = mechanism->n_rates;
@@ -292,6 +295,7 @@ std::vector<double> GeneralisedState::bias_forces() const
 std::vector<double> GeneralisedState::gravity_forces() const
 {
     std::vector<double> forces = parts_->along(parts_->weights());
+    // Not -one, which would make -0 of zero.
     for (double& one : forces) one = 0 - one;
     return forces;
 }

@@ -62,6 +62,8 @@ Vector3 turn(const Matrix3& from, const Matrix3& to)
 
 }   // namespace
 
+/// Places are closed at rest, since rates are given later, along the coordinates. Numbers of joints count
+/// from where bodies are stated, not from where they are placed.
 Mechanism::Mechanism(const Model& the_model, const State& at, StartPolicy policy,
                      const std::vector<std::string>& wanted)
     : model(released(the_model, at.t)), bodies(model), loads(model), rotors(rotors_of(model)),
@@ -94,6 +96,7 @@ Mechanism::Mechanism(const Model& the_model, const State& at, StartPolicy policy
     }
 }
 
+/// X does not tell turns: an angle that counts them goes the shorter way.
 std::vector<double> Mechanism::way_to(const Configuration& X, std::span<const double> target) const
 {
     std::vector<double> all;
@@ -113,6 +116,7 @@ std::vector<double> Mechanism::way_to(const Configuration& X, std::span<const do
     return all;
 }
 
+/// Numbers tell turns, so that this way may be many turns long.
 std::vector<double> Mechanism::way(std::span<const double> from, std::span<const double> to) const
 {
     std::vector<double> all;
@@ -150,6 +154,7 @@ std::vector<double> Mechanism::gone(std::span<const double> from, std::span<cons
     return all;
 }
 
+/// Components of one joint count together, by the length of their vector.
 void Mechanism::refuse_half_turns(std::span<const double> target) const
 {
     std::vector<double> squares(model.joints().size(), 0.0);

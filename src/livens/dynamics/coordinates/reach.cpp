@@ -52,6 +52,8 @@ public:
     }
 
     /// Goes on until the gap is closed or does not shrink any more. Returns what is left.
+    /// The damping becomes a tenth where a step gains; ten times as much where it does not, does not close,
+    /// or is half a unit long and more.
     PoseGap follow(Placed& at, const Vector3& position, const Matrix3& directors_there, int most) const
     {
         PoseGap left = gap(at, position, directors_there);

@@ -18,6 +18,7 @@ Displacement along_screw(const Vector3& at, const Vector3& velocity, const Vecto
 {
     const double angle = norm(turn);
     double first = 0.5, second = 1.0 / 6;   // (1 - cos a) / a^2, (a - sin a) / a^3
+    // For small angles differences would lose digits: series to the sixth power of the angle.
     if (angle > 1e-2) {
         const SineCosine half = sine_cosine(0.5 * angle), whole = sine_cosine(angle);
         first = 2 * half.sine * half.sine / (angle * angle);
@@ -67,6 +68,7 @@ Configuration along_screws(const Mechanism& mechanism, const Placed& from, std::
     for (int b = 0; b < mechanism.model.n_bodies(); ++b) {
         const BodyTable& body = mechanism.bodies[b];
         const Vector3 at = from.X[b].column(0);
+        // exp(xi_1 q_1) exp(xi_2 q_2) X: what moves least goes first, while its screw is where it was.
         for (auto screw = screws.rbegin(); screw != screws.rend(); ++screw) {
             Vector3 velocity{}, turn{};
             for (int k = screw->rate; k < screw->rate + screw->n_rates; ++k)
@@ -74,6 +76,7 @@ Configuration along_screws(const Mechanism& mechanism, const Placed& from, std::
                     (i < 3 ? velocity[i] : turn[i - 3]) += part * way[k] * from.by_rates(body.first + i, k);
             if (velocity == Vector3{} && turn == Vector3{}) continue;
             X[b] = along_screw(at, velocity, turn).of_configuration(X[b]);
+            // A point has no directors that could turn.
             if (body.dofs == 3) X[b] = configuration(X[b].column(0), Matrix3{});
         }
     }

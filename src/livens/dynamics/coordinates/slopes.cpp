@@ -17,6 +17,7 @@ namespace {
 using Of = GeneralisedCoordinate::Of;
 
 constexpr double slope_step = 0.01;   // rad, lengths of the model, or these a second
+// f' = sum of c_i (f(i h) - f(-i h)) / h, i = 1, 2, 3
 constexpr std::array<double, 3> sixth_order = {3.0 / 4, -3.0 / 20, 1.0 / 60};
 
 /// Slope of numbers by what moves them: of(step) for steps to both sides.
@@ -89,6 +90,7 @@ std::vector<Matrix34> velocities_behind(std::span<const double> balance, std::si
 
 }   // namespace
 
+/// M dq'' = what loads change by, less the change of M q'' + h - J^T N^T F at fixed q'' and F.
 StateSlopes GeneralisedState::slopes() const
 {
     const Mechanism& m = *parts_->mechanism;

@@ -26,6 +26,7 @@ double InstantSystem::move_towards_rows(InstantState& state)
         open = std::max(open, std::abs(phi) / tables_.rows[rows[c]].row->scale);
     }
     if (open <= closed_enough) return open;
+    // The least step in the mass metric with Ghat y = -Phi: Y R^-T S^-1 (-Phi), or zero, projected.
     double *y = a_.data(), *rest = b_.data();
     std::fill_n(y, tables_.n_twists, 0.0);
     if (state.held.by_joints) {

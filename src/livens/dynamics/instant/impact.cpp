@@ -187,6 +187,8 @@ private:
 
 }   // namespace
 
+/// Joints first take off what they do not let pass, and impulses start from there; approaches, by which
+/// restitution counts, are those before.
 ImpactOutcome impact(SettledInstant& held, const State& before, std::span<const Joint> stops)
 {
     ImpactOutcome outcome;
@@ -229,6 +231,7 @@ ImpactOutcome impact(SettledInstant& held, const State& before, std::span<const 
 
 double speed_apart(const Joint& stop, const State& state) { return Direction(stop, state).speed(state.V); }
 
+/// Gradient times X'', with its centripetal part, and the curvature of the row, towards the open side.
 std::vector<double> accelerations_apart(std::span<const Joint> stops, SettledInstant& held,
                                         const State& state)
 {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// J = Q / q'' by the response of the mechanism to a unit of force along each coordinate (docs/theory.md,
+// "Coordinates of joints", Limits).
 #include "livens/dynamics/instant/inertia_along.h"
 
 #include <algorithm>
@@ -53,6 +55,7 @@ std::vector<double> inertias_along(const Model& all, std::span<const JointCoordi
         std::vector<Matrix34> moved(start.X.size());
         for (std::size_t b = 0; b < moved.size(); ++b)
             std::copy_n(A.begin() + static_cast<std::ptrdiff_t>(12 * b), 12, moved[b].a);
+        // From rest q'' is the rate of q by the accelerations: nothing is quadratic in velocities.
         inertias[k] = 1 / coordinate_rate(coordinates[k], start.X, moved);
     }
     return inertias;

@@ -305,6 +305,7 @@ void InstantSystem::particular(const InstantState& state, Side from, double* y) 
     basis.q.solve_R_transposed(y);
 }
 
+/// R^-1 1 is large in the rows of the combination that is nearest to zero: theory.md, "Singular positions".
 std::vector<int> InstantSystem::weak_rows(InstantState& state) const
 {
     add_basis(state);
@@ -318,6 +319,7 @@ std::vector<int> InstantSystem::weak_rows(InstantState& state) const
     return rows;
 }
 
+/// Ghat acceleration = 0: what velocities and drives do to the rows has no part in a response.
 void InstantSystem::respond(InstantState& state, const double* raw, double* acceleration)
 {
     double *y = a_.data(), *forces = b_.data();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The least sum by the wrenches on bodies: lambda = M^-1 G y, of which y is found by a factor of G^T M^-1 G.
+// M has a block for each joint: products of its rows in reactions (docs/theory.md, "Least reactions").
 #include "livens/dynamics/instant/least_loads.h"
 
 #include <algorithm>
@@ -59,6 +60,7 @@ inline void add_scaled(double factor, const double* x, double* to)
 
 }   // namespace
 
+/// Poles are the means of the bodies' joint points, as where rank is judged.
 LeastLoads::LeastLoads(const Model& model, const RowTables& rows, int n_independent)
     : model_(model), tables_(rows), n_independent_(n_independent), length_(model.length()),
       poles_(static_cast<std::size_t>(model.n_bodies()))
@@ -96,6 +98,8 @@ LeastLoads::Part LeastLoads::part_of(int joint)
     return part;
 }
 
+/// A line begins at the first body that a joint ties to its own: outside of this profile the factor has no
+/// fill. Where even that is too much work, nothing is served.
 void LeastLoads::find_profile()
 {
     const int n = 6 * model_.n_bodies();
@@ -294,6 +298,7 @@ double LeastLoads::add_least(const std::vector<double>& push)
     return largest;
 }
 
+/// The second pass solves for what the first left of the push: where that is much the factor is not trusted.
 bool LeastLoads::find_set(const double* multipliers, Reaction* reactions)
 {
     std::ranges::fill(lambda_, 0.0);

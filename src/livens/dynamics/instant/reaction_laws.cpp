@@ -29,6 +29,7 @@ struct ByReactions {
         Values values, rates, reactions;
     };
 
+    /// Laws are solved together, since each force may change all reactions; this one takes its own part.
     Seen look(const LoadArguments& at) const
     {
         State state{
@@ -133,6 +134,7 @@ Load load_by(const std::shared_ptr<ReactionMechanism>& mechanism, std::size_t in
     load.bodies = bodies_of(law, mechanism->model());
     load.readings.clear();
     ByReactions made{mechanism, index, load.bodies, {}};
+    // Angles of the mechanism's loads first: look() hands them on in this order.
     for (const Load& one : mechanism->model().loads())
         load.angles.insert(load.angles.end(), one.angles.begin(), one.angles.end());
     const State start = mechanism->model().start();

@@ -98,6 +98,7 @@ public:
             }
     }
 
+    /// Linear in forces: a unit adds what the mechanism with it has beside the one without.
     bool respond(const State& state, const std::vector<double>& angles, Side side,
                  const std::vector<int>& joints, ReactionResponse& response)
     {
@@ -209,6 +210,7 @@ ReactionMechanism::Acting ReactionMechanism::mechanism_of(std::vector<int> actin
                                                           Side side) const
 {
     constexpr double before = -std::numeric_limits<double>::infinity();
+    // On the left side those joints act that did so just before.
     const double t = side == Side::left ? std::nextafter(state.t, before) : state.t;
     Acting made{std::move(acting), is_partial_ ? livens::acting_at(model_, t).model : model_, {}};
     for (const int joint : joints_) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Reactions of redundant joints with the least sum of squares: docs/theory.md, "Least reactions".
 #include "livens/dynamics/instant/reactions.h"
 
 #include <algorithm>
@@ -60,6 +61,8 @@ std::string in_words(const SharedComponents& shared)
 /// lambda + N c with the least |terms(lambda + N c)|: with terms(N) = Q R, N a basis of null vectors, the
 /// part of terms(lambda) along Q is taken off. In each joint Q has the parts of null vectors that are
 /// orthonormal there.
+/// Where a joint has more than least_part, one of its six components has more than a third of that, as
+/// sqrt(6) < 3.
 UniqueReactions least_reactions(const Model& model, std::span<const Matrix34> X,
                                 std::span<const double> multipliers, std::span<const int> independent)
 {

@@ -18,6 +18,7 @@ SettledInstant::SettledInstant(const Model& model, std::vector<int> independent)
     solved_.resize(tables_);
 }
 
+/// Directors, then places, then rates, which are those of the rows where these are closed.
 bool SettledInstant::settle(const State& state)
 {
     if (settled_.t == state.t && settled_.X == state.X && settled_.V == state.V) return is_held_;
@@ -38,9 +39,11 @@ bool SettledInstant::settle(const State& state)
     constexpr double lost = 1e-4;   // docs/theory.md, "Singular positions"
     const auto is_lost = [&] { return tables_.rank > 0 && solved_.held.smallest_pivot < lost; };
     if (is_lost()) return false;
+    // If rows do not close the place stays as it is; whether joints hold, the pivots alone decide.
     system_.close(solved_);
     if (is_lost()) return false;
     system_.from_velocity(solved_);
+    // With a copy of p, as from_momentum() writes the state's own.
     std::vector<double> unused(static_cast<std::size_t>(tables_.n_rows()));
     system_.from_momentum(solved_, std::vector<double>(solved_.p).data(), 1, unused.data());
     return is_held_ = true;

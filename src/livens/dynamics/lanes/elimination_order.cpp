@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Who is coupled is kept as lists, which are filled in as nodes go: elimination couples all neighbours of a
+// node with each other (docs/theory.md, "Without a tangent", Elimination).
 #include "livens/dynamics/lanes/elimination_order.h"
 
 #include <functional>
@@ -11,6 +13,7 @@ namespace {
 
 using Neighbours = std::vector<std::vector<int>>;
 
+/// Of each node the others that share a thing with it, each once.
 Neighbours coupled(const Neighbours& things_of, int n_things)
 {
     Neighbours nodes_at(n_things), beside(things_of.size());
@@ -47,6 +50,7 @@ std::vector<int> order_of_least_degree(const Neighbours& things_of, int n_things
     while (!waiting.empty()) {
         const auto [known, node] = waiting.top();
         waiting.pop();
+        // Degrees change as neighbours go; of the entries of a node the one with its last degree counts.
         if (is_done[node] || known != degrees[node]) continue;
         is_done[node] = true;
         order.push_back(node);

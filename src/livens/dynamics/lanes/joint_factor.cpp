@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// One configuration by the arithmetic of lanes, W = 1: numbers, gradients, and the factor of G G^T
+// (docs/theory.md, "Without a tangent", Elimination).
 #include "livens/dynamics/lanes/joint_factor.h"
 
 #include <algorithm>
@@ -27,6 +29,7 @@ void to_centres(const ModelTables& tables, const double* X, double* numbers)
 
 }   // namespace
 
+/// One block for all arrays, each of which takes whole lines of eight doubles, so that all are aligned.
 void LaneStore::resize(const RowPattern& pattern, int width)
 {
     const lanes::Pattern& p = pattern.view();
@@ -104,6 +107,7 @@ double JointFactor::prepare(const ModelTables& tables, Instant at, const double*
     return pivot;
 }
 
+/// y -= G^T (G G^T)^-1 (G y - rates), pass after pass for what rounding of the factor has left.
 void JointFactor::project(double* y, const double* rates, double* mu) const
 {
     const lanes::Pattern& p = pattern_->view();
@@ -119,6 +123,8 @@ void JointFactor::project(double* y, const double* rates, double* mu) const
     }
 }
 
+/// take_off() makes y = -G^T mu. Out of scaled twists f = sqrt(M) y_1, and tau = R L y_2 about the centre of
+/// mass.
 void JointFactor::add_wrenches(const double* mu, double factor, double* q)
 {
     const lanes::Pattern& p = pattern_->view();
@@ -146,6 +152,8 @@ bool JointFactor::rates(Instant at, double* out) const
     return true;
 }
 
+/// Inner products have the second derivative x'' . y + 2 x' . y' + x . y''. Sums are linear in columns and
+/// products: the tables of values serve for derivatives too, without their constants.
 void JointFactor::curvatures(const ModelTables& tables, Instant at, const double* V, const double* A,
                              double* out)
 {

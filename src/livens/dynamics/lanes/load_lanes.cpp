@@ -86,6 +86,7 @@ void LoadLanes::evaluate(const double* X, const double* V, const double* factors
     turns_.assign(turns.begin(), turns.end());
     run_(view(program_->steps()), X, V, factors, F);
     if (program_->others().empty()) return;
+    // The run has left turns at the last point; others begin at the start of the element again.
     turns_.assign(turns.begin(), turns.end());
     add_others(X, V, factors, F);
 }
@@ -135,6 +136,8 @@ void LoadLanes::go_on(std::span<double> turns, const double* X, const double* V)
     std::ranges::copy(turns_, turns.begin());
 }
 
+/// Point after point, about reference points, as loads know bodies. With the centre of mass x = phi +
+/// sum c_a d_a a director has the force F_a - c_a F_0.
 void LoadLanes::add_others(const double* X, const double* V, const double* factors, double* F)
 {
     for (int c = 0; c < n_; ++c) {
@@ -159,6 +162,7 @@ LoadsAtInstant::LoadsAtInstant(const ModelTables& tables)
       all_(tables, nullptr, 1, 1, RecordedLoads::all), X_(12 * tables.bodies.size()), V_(X_), F_(X_)
 {}
 
+/// Where turns are not known loads are asked one by one, as LoadTables does.
 void LoadsAtInstant::add(Instant at, const double* X, const double* V, double* raw,
                          std::span<const double> turns, bool far_from_bends)
 {

@@ -213,6 +213,7 @@ std::vector<char> LoadProgram::find_needed(RecordedLoads which) const
     for (const TapeWatch& watch : tape_.watched())
         for (const std::vector<int>* places : watched_of(watch, which))
             for (const int place : *places) needed[step_at[place]] = 1;
+    // Backwards: operands come before the steps that take them.
     for (std::size_t i = steps.size(); i-- > 0;) {
         needed[i] = needed[i] || (steps[i].kind == TapeKind::pull && are_forces);
         if (needed[i]) for_operands(tape_, steps[i], [&](int place) { needed[step_at[place]] = 1; });
@@ -284,6 +285,7 @@ void LoadProgram::take_product(std::size_t i, lanes::LoadStep& made) const
 }
 
 /// Onto the force of an arm, which begins with the first pull.
+/// That one sets the registers, so that nobody has to clear them.
 lanes::LoadStep LoadProgram::made_pull(const TapeStep& step, lanes::LoadStep made)
 {
     int& force = forces_[static_cast<std::size_t>(step.index)];

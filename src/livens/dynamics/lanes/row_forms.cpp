@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The weight of a drive's form is f_k(t), that of a coordinate the slope F_k: docs/theory.md, "Drives" and
+// "Coordinates of joints".
 #include "livens/dynamics/lanes/row_forms.h"
 
 #include <algorithm>
@@ -42,6 +44,7 @@ void RowForms::weigh_at(Instant at, const lanes::Values& one) const
             std::copy_n(F.gradient.begin(), function.n, one.forms.weights + form);
             form += static_cast<int>(function.n);
         }
+        // X tells such a row up to its period: the value nearest to zero,
         // of the whole row, whose constant is not among the forms
         if (row.period > 0) *sum = std::remainder(*sum + row.constant, row.period) - row.constant;
         ++sum;
@@ -79,6 +82,7 @@ void RowForms::add_function(const SmoothFunction& F, int first, const lanes::Val
             for (int i = 0; i < count; ++i)
                 steps[i][static_cast<std::size_t>(k)] = nodes.forms.values[(first + k) * width + l + i];
         const auto n_steps = static_cast<std::size_t>(count);
+        // By how forms have changed, not from two values of F: small elements lose no digits.
         F.moved(from, {steps, n_steps}, {after, n_steps});
         for (int i = 0; i < count; ++i) {
             change[l + i] += after[i].value;

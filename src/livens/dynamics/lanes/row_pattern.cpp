@@ -14,6 +14,8 @@ namespace {
 using Graph = std::vector<std::vector<int>>;
 
 /// Of rows that follow each other, those of one joint.
+/// At most five at a time; four are two and two, six three and three (docs/theory.md, "Without a tangent",
+/// Elimination).
 std::vector<std::vector<int>> groups_of(const ModelTables& tables, const std::vector<int>& rows)
 {
     std::vector<std::vector<int>> groups;
@@ -193,6 +195,7 @@ void FactorTables::add(const Graph& twists, int n_twists, std::vector<lanes::Gro
     blocks_.push_back({0, 0, 0, 0, static_cast<int>(pairs_.size()), static_cast<int>(products_.size())});
 }
 
+/// Twists of both groups, and groups before both, by one pass each over two ascending lists.
 void FactorTables::add_block(const lanes::Group& group, const lanes::Group& before)
 {
     const lanes::Group &behind = (&group)[1], &behind_before = (&before)[1];

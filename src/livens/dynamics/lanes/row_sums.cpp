@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Rows about centres of mass, by inner products of columns. Those of directors of one body are constants,
+// since lanes keep bodies rigid: such terms leave the sums (docs/theory.md, "Without a tangent").
 #include "livens/dynamics/lanes/row_sums.h"
 
 #include <algorithm>
@@ -76,6 +78,7 @@ public:
             has_K[p] = std::any_of(K[p], K[p] + n, [](double k) { return k != 0; });
         }
     }
+    /// Their inner product is 1 or 0.
     bool are_directors_of_one(int p, int q) const { return p / 4 == q / 4 && p % 4 != 0 && q % 4 != 0; }
 };
 
@@ -211,6 +214,7 @@ void RowSums::add_gradient(const CentredForm& form, int side, LinearSum& sum, co
     }
 }
 
+/// The lower triangle of the symmetric K, with half of its diagonal, is 1/2 sum K_pq x_p . x_q.
 void RowSums::add_value(const CentredForm& form, LinearSum& phi, SumTable& to)
 {
     phi.clear(form.c);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Scaled twists, with shortcuts that most bodies allow: principal axes, and a reference point at the centre
+// of mass.
 #include "livens/dynamics/rows/body_tables.h"
 
 #include <algorithm>
@@ -27,6 +29,8 @@ void multiply_transposed(const double* l, const double* r, double* out)
 
 /// The constants of the scaled twists. A singular inertia is enlarged for the coordinates alone: the
 /// equations keep m.
+/// A pivot below 1e-7 tr J becomes 1e-3 tr J, or that of the mass at a thousandth of the model's length if
+/// that is more.
 bool scale_body(const Body& body, double length, BodyTable& table)
 {
     const MassProperties p = mass_properties(body.mass);
@@ -96,6 +100,7 @@ void BodyTables::add_weight(double factor, double* raw) const
     }
 }
 
+/// m acts between columns of Y, so that the 12 x 12 matrix m (x) 1 is never formed.
 void MassTable::times(const double* __restrict Y, double factor, double* __restrict out) const
 {
     for (int a = 0; a < 4; ++a) {
@@ -115,6 +120,7 @@ void BodyTables::times_mass(const double* Y, double factor, double* out) const
     for (int b = 0; b < n_; ++b) tables_[b].mass.times(Y + 12 * b, factor, out + 12 * b);
 }
 
+/// In principal axes L is diagonal, and K = R L^-T has the columns of R, scaled.
 void BodyTables::map_twist(int b, const double* X, double* f) const
 {
     if (tables_[b].dofs == 3) return;

@@ -43,6 +43,7 @@ void ConstraintBasis::fill(const ModelTables& tables, int column, int row, Insta
     g[longest_gradient] = scale;
 }
 
+/// keep_choices: Z has to vary smoothly while a tangent is in use that an earlier basis was made for.
 double ConstraintBasis::build(const ModelTables& tables, Instant at, const double* X, const double* maps,
                               const std::vector<int>& which, bool keep_choices, const KnownColumns& known)
 {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Loads by their own functions, one by one; dynamics/lanes runs those that are recorded side by side.
 #include "livens/dynamics/rows/load_tables.h"
 
 #include <algorithm>
@@ -25,6 +26,7 @@ LoadTables::LoadTables(const Model& model) : turns(model), model_(model)
         if (model.loads()[l].depends_on_X || model.loads()[l].depends_on_V) with_tangent.push_back(l);
 }
 
+/// The world keeps the configuration and the velocity, zero, that arguments begin with.
 LoadArguments LoadTables::arguments(int index, Instant instant, const double* X, const double* V,
                                     std::span<const double> angles) const
 {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Rows as tables of what is not zero: a joint's row touches few columns of its bodies (docs/theory.md,
+// "Joints are quadratic forms").
 #include "livens/dynamics/rows/row_tables.h"
 
 #include <algorithm>
@@ -18,6 +20,7 @@ bool touches(const QuadraticForm& form, bool is_i, int column)
     return touched;
 }
 
+/// Of all forms of a row, those of drives and coordinates too.
 void find_columns(const RowBodies& bodies, RowTable& table)
 {
     bool touched[RowBodies::most][4];
@@ -40,6 +43,7 @@ void find_columns(const RowBodies& bodies, RowTable& table)
     }
 }
 
+/// Terms with the world are in B and c already, so that such a row has one side.
 RowTable row_table(const ConstraintRow& row)
 {
     RowTable table;
@@ -127,11 +131,13 @@ double RowTables::change(int r, const double* g_from, const double* g_to, const 
     return 0.5 * sum;
 }
 
+/// A row with drives is no quadratic form alone.
 double RowTables::rate(int r, Instant at, const double* X) const
 {
     return tables_[r].is_quadratic ? 0 : constraint_rate(*tables_[r].row, at, Configurations(X));
 }
 
+/// <g, X> = <X K, X> + <B, X>: half of it lacks half of the linear part.
 double RowTables::value(int r, Instant at, const double* X, const double* g) const
 {
     const RowTable& t = tables_[r];

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Tables of a model, and gradients of rows by scaled twists: y = D^T [f; m] with the moment m about the
+// centre of mass (docs/theory.md, "Eliminating the joint multipliers").
 #include "livens/dynamics/rows/tables.h"
 
 #include <algorithm>
@@ -34,6 +36,7 @@ ModelTables::ModelTables(const Model& the_model, std::vector<int> rows_to_solve,
       rank(static_cast<int>(independent.size())),
       known_pattern(known != nullptr ? std::move(known) : std::make_shared<KnownPattern>())
 {
+    // Outside of its reach a row is zero; inside too, where other bodies lie between its own.
     for (const RowTable& table : rows) {
         auto& [first, end] = reaches.emplace_back(std::array{n_twists, 0});
         for (const int b : table.bodies) {
@@ -43,6 +46,7 @@ ModelTables::ModelTables(const Model& the_model, std::vector<int> rows_to_solve,
     }
 }
 
+/// What is no number counts as violated.
 int ModelTables::first_violated_beside(const std::vector<int>& held, Instant at, const double* X,
                                        double most) const
 {
@@ -98,6 +102,7 @@ double ModelTables::scaled_gradient(int r, const double* X, const double* maps, 
         plain_wrench(table, side, X, g, q);
         if (body.offset) BodyTables::to_centre(map, q);
         scale_row(body, map, q, y);
+        // Each side by itself: the sum of two sides is the same to the bit in either order.
         for (int i = 0; i < 3; ++i) of_side += y[i] * y[i];
         for (int i = 3; i < 6 && body.dofs == 6; ++i) of_side += y[i] * y[i];
         square += of_side;

@@ -71,6 +71,7 @@ Matrix34 moved(const Matrix34& X, const Vector3& step, const Vector3& turn)
     return configuration(X.column(0) + step, directors_from_rotation_vector(turn) * directors(X));
 }
 
+/// The 2 x 2 blocks of theory.md, "The tangent": moments s beside the diagonal, c_00 for the place.
 void add_block(const double* c, const double* X_row, const double* X_column, double factor, double* out,
                int stride)
 {
@@ -114,6 +115,8 @@ void add_block(const double* c, const double* X_row, const double* X_column, dou
     out[5 * stride + 1] += b0;
 }
 
+/// The derivative of sum d_a x r_a by a turn w of the directors:
+/// (w x d_a) x r_a = d_a (r_a . w) - (r_a . d_a) w.
 void add_geometric(const double* X, const double* r, double* out, int stride)
 {
     double tr = 0;

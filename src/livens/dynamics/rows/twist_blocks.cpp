@@ -29,6 +29,7 @@ void fill_map(const BodyTable& body, const double* maps, double* D)
 
 }   // namespace
 
+/// The map of a point mass has three columns: rows and columns behind them come out as zero.
 void scale_block(const ModelTables& tables, const double* maps_A, int i, const double* maps_B, int j,
                  const double* block, double* out)
 {
@@ -54,6 +55,7 @@ void scale_block(const ModelTables& tables, const double* maps_A, int i, const d
     }
 }
 
+/// Column by column: dX = N(X_column) e_j, dF = K dX, and N(X_row)^T dF.
 void add_reduced(const Matrix<12, 12>& K, const double* X_row, const double* X_column, int dofs,
                  double* block)
 {
@@ -70,6 +72,8 @@ void add_reduced(const Matrix<12, 12>& K, const double* X_row, const double* X_c
     }
 }
 
+/// A force on the place is scaled by 1 / sqrt(M) and, with its arm to the centre of mass, by L^-1; those on
+/// directors, which have norm one, by L^-1 alone.
 double load_terms(const ModelTables& tables, const Load& load, const LoadArguments& at,
                   const LoadTangent& tangent)
 {

@@ -69,6 +69,8 @@ std::optional<Complaint> why_without_law(const Model& model, std::span<const Mat
     return {};
 }
 
+/// By the joints that have values where bodies are placed; rates are left out on the way. Velocities and
+/// spins of bodies that are stated stay as they are, in world axes.
 std::optional<State> led_to_laws(const Model& model, const std::vector<StartCoordinate>& wanted,
                                  StartPolicy policy, double t)
 {

@@ -15,6 +15,7 @@ namespace livens::inline dynamics_internal {
 namespace {
 
 constexpr std::size_t most_rows = 400;   // their matrix is dense
+// Of the singular value at the start; of the square of the left vector.
 constexpr double much_nearer = 1e-2, least_share = 0.02;
 
 Model as_at(const Model& model, const State& state)
@@ -102,6 +103,7 @@ Lock joints_that_lock(const Model& model, const State& before, const State& now)
         for (const int r : rows)
             if (model.row_joint(r) != j) others.push_back(r);
         if (others.size() == rows.size()) continue;
+        // Of squares: a tenth of the singular value.
         if (nearest.square < much_nearer * nearest_to_nothing(model, now, others).square)
             lock.drives.push_back(j);
     }

@@ -64,6 +64,7 @@ void Orientation::arrange(const ModelTables& tables, const std::vector<int>& row
     gradient_.resize(RowTables::gradient_size);
 }
 
+/// Rows of norm 1. One without a gradient stays zero: the determinant then has no sign.
 void Orientation::place(const ModelTables& tables, const std::vector<int>& rows, Instant at, const double* X)
 {
     if (rows != rows_ || order_.empty()) arrange(tables, rows);

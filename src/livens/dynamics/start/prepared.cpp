@@ -30,6 +30,7 @@ bool are_same(const State& a, const State& b)
 Prepared::Prepared() = default;
 Prepared::~Prepared() = default;
 
+/// All that is kept is of one version of a model, and goes with it.
 void Prepared::serve(const Model& model)
 {
     if (version_ == model.version()) return;

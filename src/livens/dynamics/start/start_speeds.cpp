@@ -10,6 +10,7 @@ namespace livens::inline dynamics_internal {
 
 namespace {
 
+// Of sqrt(a L), and in lengths of the model a second.
 constexpr double slowest = 1e-3, per_second = 1e-6;
 
 /// What a force and the moment about the centre of mass begin to do to a body, m/s^2 at the model's length.

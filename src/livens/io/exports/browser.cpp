@@ -126,6 +126,8 @@ std::string io_internal::browser_program()
     return {};
 }
 
+/// The first member of this name, at any depth, if it is a string: answers are small and known, and the
+/// browser writes no blanks.
 std::string io_internal::string_member(std::string_view json, std::string_view key)
 {
     const std::string before = "\"" + std::string(key) + "\":\"";
@@ -149,6 +151,7 @@ std::string io_internal::string_member(std::string_view json, std::string_view k
     return out;
 }
 
+/// Six bits a letter, up to the first '='. Letters are not checked: the page has made them.
 std::string io_internal::from_base64(std::string_view text)
 {
     constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -187,6 +190,7 @@ Browser::Browser()
     }
 }
 
+/// What it says of itself goes into a file, the last line of which is told if it ends too soon.
 void Browser::start(const std::string& program)
 {
     const std::array<int, 2> in = new_pipe(), out = new_pipe();
@@ -219,6 +223,7 @@ void Browser::start(const std::string& program)
     }
 }
 
+/// Closed pipes ask it to end. What has not ended by then is killed, with all processes that it has started.
 Browser::~Browser()
 {
     if (to_ >= 0) ::close(to_);
@@ -279,6 +284,8 @@ std::string Browser::receive()
     }
 }
 
+/// A reply begins with the number of its command; messages with another beginning are events, which nobody
+/// waits for.
 std::string Browser::answer(const std::string& method, const std::string& parameters)
 {
     const std::string id = "{\"id\":" + std::to_string(++number_) + ",";

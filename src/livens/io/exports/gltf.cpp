@@ -62,6 +62,7 @@ public:
     const std::string& bytes() const { return bytes_; }
 
 private:
+    /// All numbers have four bytes, so that every view begins at a multiple of four, as the format asks.
     void begin(const Accessor& a, std::size_t n_numbers)
     {
         JsonWriter view;

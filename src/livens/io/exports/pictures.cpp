@@ -118,6 +118,8 @@ std::string signed_picture(std::string picture, std::string_view kind)
 
 }   // namespace
 
+/// Frames too far apart are told by the middle of the way between two: where bodies turn back it is off the
+/// straight line by a quarter of its length.
 std::string io_internal::doubt_of_video(const ExportInput& input, std::string_view word)
 {
     const Motion& motion = input.run.motion;

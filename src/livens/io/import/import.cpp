@@ -11,6 +11,7 @@ namespace livens {
 namespace {
 
 /// Of what was told, a comment each.
+/// Messages quote the file, and control characters are not allowed in comments of TOML.
 std::string head_of(const std::filesystem::path& file, const std::vector<Diagnostic>& told)
 {
     std::string text = "# From " + file.filename().string() + ", by livens import.\n";

@@ -36,6 +36,8 @@ std::string listed(const std::vector<std::string>& names, std::size_t most)
 
 }   // namespace
 
+/// One entry for each kind, which is the constant of `losses` itself, and word. Words of a stranger's file
+/// may be any number: beyond the bound they become one entry of their kind.
 void Losses::add(const LossKind& kind, const SourceLocation& place, std::string name, std::string word)
 {
     const auto same = [&](const Loss& l) { return l.kind == &kind && l.word == word; };

@@ -42,6 +42,8 @@ Node numbers_at(const SourceLocation& place, std::span<const double> values)
     return node;
 }
 
+/// A basic string, in which backslashes and quotes are escaped, and line breaks too, so that each value
+/// stands on one line.
 std::string toml_text(std::string_view text)
 {
     std::string quoted = "\"";
@@ -65,6 +67,7 @@ std::string toml_key(std::string_view key)
     return is_bare ? std::string(key) : toml_text(key);
 }
 
+/// TOML takes what has neither point nor exponent for an integer; `n` is that of inf and nan.
 std::string toml_number(double value)
 {
     const std::string text = to_text(value);
@@ -96,6 +99,7 @@ std::string toml_value(const Node& node)
     return text;
 }
 
+/// What has a header [[..]] for each of its tables.
 bool is_tables(const Node& node)
 {
     return node.kind == Node::Kind::array && !node.items().empty() &&
@@ -163,6 +167,7 @@ TableMaker& TableMaker::table(std::string_view key, TableMaker&& value)
     return *this;
 }
 
+/// Without tables the key is left out: an empty list of visuals would be refused.
 TableMaker& TableMaker::tables(std::string_view key, std::vector<TableMaker>&& values)
 {
     if (values.empty()) return *this;
@@ -171,6 +176,7 @@ TableMaker& TableMaker::tables(std::string_view key, std::vector<TableMaker>&& v
     return *this;
 }
 
+/// Plain values first: behind a header they would belong to its table. Tables inside of tables are inline.
 std::string toml_of(const Node& root)
 {
     std::string text;

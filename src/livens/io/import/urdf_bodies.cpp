@@ -26,6 +26,8 @@ Matrix3 moved_inertia(const Matrix3& inertia, double mass, const Vector3& arm)
     return inertia + mass * (dot(arm, arm) * identity<3>() - outer(arm, arm));
 }
 
+/// In the frame of the link from which the body has its name, about the centre of mass of all: moments of
+/// links are turned, then moved by Steiner's theorem.
 MassProperties sum_of(const UrdfFile& file, const UrdfTree& tree, int body, const std::vector<int>& links)
 {
     const Pose& frame = tree.links[tree.frames[body]].pose;
@@ -46,10 +48,12 @@ MassProperties sum_of(const UrdfFile& file, const UrdfTree& tree, int body, cons
         sum.mass += of.mass;
         sum.center_of_mass += of.mass * parts.back().center_of_mass;
     }
+    // m c / m may differ from c in the last digit.
     if (parts.size() == 1) return parts.front();
     if (sum.mass > 0) sum.center_of_mass *= 1 / sum.mass;
     for (const MassProperties& part : parts)
         sum.inertia += moved_inertia(part.inertia, part.mass, part.center_of_mass - sum.center_of_mass);
+    // A J A^T is symmetric but for rounding, and urdf_scenario.cpp writes columns as rows.
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < i; ++j)
             sum.inertia(i, j) = sum.inertia(j, i) = 0.5 * (sum.inertia(i, j) + sum.inertia(j, i));
@@ -109,6 +113,7 @@ std::vector<MassProperties> masses_of(const UrdfFile& file, const UrdfTree& tree
         if (inertias == UrdfOptions::Inertias::mend) mend(body, link, losses);
         if (body.mass > 0) continue;
         body.mass = massless * smallest;
+        // Spread like the most extended body: nothing tells how large this one is.
         if (trace(body.inertia) == 0) body.inertia = body.mass * radius * identity<3>();
         losses.add(losses::massless, link.place, "'" + link.name + "'");
     }

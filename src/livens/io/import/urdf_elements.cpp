@@ -29,6 +29,7 @@ std::vector<std::string_view> between_blanks(std::string_view text)
 /// The whole word as a finite number.
 bool read_number(std::string_view word, double& value)
 {
+    // from_chars() knows no plus sign, and stops where a number ends, which has to be the end of the word.
     if (word.starts_with('+')) word.remove_prefix(1);
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     return error == std::errc{} && end == word.data() + word.size() && std::isfinite(value);
@@ -48,6 +49,8 @@ std::string help_of_macros(std::string_view word)
 
 std::string in_marks(std::string_view name) { return "'" + std::string(name) + "'"; }
 
+/// In this order: words that count, those that are known not to, macros, and last whether it is nearly one
+/// of both. What other programs add (`is_free`) may be near to a word by chance.
 void UrdfElements::check_word(const XmlElement& e, const XmlElement& child, const ElementContent& content,
                               const std::string& owner)
 {

@@ -65,6 +65,7 @@ UrdfInertial UrdfReader::inertial(const XmlElement& e, const std::string& owner)
                 has_products = false;
             }
         if (!has_products) losses_.add(losses::products, inertia->place, owner);
+        // Stated along the axes of <origin>, wanted along those of the link.
         of.inertia = frame.axes * J * transpose(frame.axes);
         of.place = inertia->place;
     }
@@ -254,6 +255,8 @@ UrdfJoint UrdfReader::joint(const XmlElement& e)
     return joint;
 }
 
+/// Materials of the robot are read first, those that links define as links are read; names are looked up
+/// when all are known, since a link may name what a later one defines.
 UrdfFile UrdfReader::file(const XmlElement& root)
 {
     UrdfFile file;
@@ -292,6 +295,7 @@ UrdfFile UrdfReader::file(const XmlElement& root)
 
 }   // namespace
 
+/// Rodrigues' formula: R = 1 + sin(angle) K + (1 - cos(angle)) K^2, K v = axis x v.
 Matrix3 turn(const Vector3& axis, double angle)
 {
     const auto [sine, cosine] = sine_cosine(angle);

@@ -42,6 +42,8 @@ TableMaker frame_table(const Pose& pose)
 
 /// The nearest ratio of whole numbers up to 10000, which two angles that may turn round and round must have;
 /// the multiplier itself if it is one, or near none.
+/// Angles are told up to whole turns: a coupling whose factors have no common measure is refused (theory.md,
+/// "Coordinates of joints", Angles).
 double ratio_of_angles(double multiplier)
 {
     constexpr int most = 10000;
@@ -213,6 +215,8 @@ const PlacedLink* UrdfJoints::find_link(const std::string& name, Findings& findi
     return nullptr;
 }
 
+/// By the frames of both links, which the loop holds together: welded, or a revolute one about their z axes,
+/// as the third axis of a frame is that of the joint. Of a spherical one their origins are enough.
 void UrdfJoints::add_loops(std::vector<TableMaker>& joints, Findings& findings)
 {
     for (const UrdfLoop& loop : options_.loops) {

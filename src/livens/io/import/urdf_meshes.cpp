@@ -83,6 +83,7 @@ bool UrdfMeshes::is_named(const fs::path& mesh) const
                                [&](const auto& p) { return is_below(mesh, plain_path(p.second)); });
 }
 
+/// Whether the file is there is asked last: of files outside of the named folders nothing is to be learnt.
 bool UrdfMeshes::locate(const UrdfVisual& visual, const std::string& link, fs::path& found,
                         Losses& losses) const
 {
@@ -104,6 +105,8 @@ bool UrdfMeshes::locate(const UrdfVisual& visual, const std::string& link, fs::p
     return true;
 }
 
+/// A scenario names meshes from its folder on, downwards: that is the one which the caller wants, if all lie
+/// below it, else the deepest above the URDF and all of them.
 void UrdfMeshes::find(const UrdfFile& file, Losses& losses)
 {
     folder_ = plain_path(file_.parent_path());

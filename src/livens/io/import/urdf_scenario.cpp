@@ -106,6 +106,7 @@ std::vector<TableMaker> UrdfImport::world_visuals(const std::set<int>& refused) 
 
 Node UrdfImport::root(const std::set<int>& refused)
 {
+    // Each try tells its own losses, behind those of read().
     losses_ = losses_before_;
     UrdfJoints joints(file_, tree_, options_, losses_);
     std::vector<TableMaker> all_bodies = bodies(joints, refused);
@@ -155,6 +156,8 @@ void add_findings(const std::vector<Diagnostic>& from, Findings& findings)
     }
 }
 
+/// Whether a mesh can be read shows when the scenario is. Each try leaves out those that were refused, and at
+/// least one more than the one before, so that there are no more tries than meshes and one.
 void import_into(ImportedTree& result, std::string_view text, const std::filesystem::path& file,
                  const UrdfOptions& options, bool with_time, Findings& findings)
 {

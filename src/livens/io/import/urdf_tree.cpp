@@ -88,6 +88,8 @@ bool UrdfPlacing::look_up_links()
 }
 
 /// Every link but one is the child of one joint, and all are reached from that one.
+/// Links that no joint is above are counted first, then what hangs from the root: a circle of joints beside a
+/// tree has no link without a joint above, and is seen by that alone.
 bool UrdfPlacing::find_root()
 {
     std::vector<int> joint_above(file_.links.size(), -1);
@@ -129,6 +131,8 @@ bool UrdfPlacing::find_root()
 }
 
 /// Behind its leader in `order_`; a circle of mimics is a finding.
+/// Along the leaders to one that is done or follows none, then back: so each stands behind its own leader.
+/// A joint that is met while its chain is open closes a circle.
 void UrdfPlacing::follow(int joint)
 {
     std::vector<int> chain;
@@ -149,6 +153,8 @@ void UrdfPlacing::follow(int joint)
     }
 }
 
+/// A joint is held if it is fixed, or if what it follows is held or counts with the factor 0. In the order of
+/// leaders one pass is enough.
 bool UrdfPlacing::follow_mimics()
 {
     const int before = findings_.n_errors();
@@ -235,6 +241,8 @@ bool UrdfPlacing::find_coordinates()
     return findings_.n_errors() == before;
 }
 
+/// v = v_p + w_p x (x - x_p) + q' a of what slides, w = w_p + q' a of what turns, with the axis a in the
+/// world, which a turn about it leaves as it is. The parent was placed before.
 void UrdfPlacing::place_child(int j, UrdfTree& tree)
 {
     const UrdfJoint& joint = file_.joints[j];
@@ -265,6 +273,7 @@ void UrdfPlacing::place_child(int j, UrdfTree& tree)
         tree.joints.push_back({j, parent.body, child.body, at, axis, q, rates_[j]});
 }
 
+/// The list grows while it is gone through: every link behind its parent.
 UrdfTree UrdfPlacing::tree()
 {
     UrdfTree tree;

@@ -81,6 +81,8 @@ Vector3 usual_place(const Model& model, const Load& load)
 
 /// The p with the least sum of |torque - p x force|^2, both in axes of the body; a little is added for its
 /// distance from where it is usual.
+/// Normal equations (sum f^T f + weak) shift = -sum f^T torque, with f = [force]x and torques about the usual
+/// place.
 Vector3 best_place(const Vector3& usual, const std::vector<LoadForces>& looks, const std::vector<Matrix34>& X)
 {
     Matrix3 A{};

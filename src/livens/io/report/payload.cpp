@@ -42,6 +42,7 @@ const char* kind_of(Precision precision)
 
 }   // namespace
 
+/// The step of a channel that does not change may be 0, by which nothing is divided: its multiples are 0.
 Stepped::Stepped(std::span<const double> values, std::size_t n_channels, int bits, double least)
 {
     const std::size_t n = n_channels == 0 ? 0 : values.size() / n_channels;

@@ -73,6 +73,7 @@ void write_balance(RunWriter& archive, const Model& model, const Motion& motion,
         };
         // Short motions have kept their balances from the verdict; long ones make them a second time.
         if (known != nullptr) return append(known->balance);
+        // 4096 ends at a time, with 20 numbers each: memory does not grow with the motion
         balance(model, motion, 1 << 12, append);
     });
 }
@@ -171,6 +172,8 @@ std::string manifest(const Run& run)
 
 }   // namespace
 
+/// All variables are declared first, as the header of the file comes first; what fills them runs later, in
+/// this order.
 void write_derived(RunWriter& archive, const Model& model, const Run& run, bool has_samples)
 {
     const Motion& m = run.motion;

@@ -77,6 +77,7 @@ private:
 };
 
 /// What the first rank says to all.
+/// Letters go as numbers, since ranks send nothing else.
 std::string told(std::string text, Ranks& ranks)
 {
     double size = static_cast<double>(text.size());
@@ -107,6 +108,8 @@ Run part_of_run(const Scenario& scenario, Solution part, const RankWork& work)
     return run;
 }
 
+/// The first rank makes the temporary file, into which all write; it gets its name when all of them have. The
+/// start is that of the first part, the end that of the last one.
 void write_parts(const std::filesystem::path& file, const Scenario& scenario, const Run& part, Ranks& ranks,
                  bool spares_others)
 {

@@ -52,6 +52,8 @@ void Assembly::each_part(const Read& read, const Take& take)
     }
 }
 
+/// Surfaces of bodies cost a quadrature, and are wanted where a load of this file or of one around it may
+/// name one. Files below cannot name bodies of this one.
 void Assembly::read_all_bodies(bool with_surfaces)
 {
     with_surfaces = with_surfaces || has_surface_loads(top_);
@@ -59,6 +61,7 @@ void Assembly::read_all_bodies(bool with_surfaces)
     read_bodies(builder_, with_surfaces);
     each_part([&](Assembly& part) { part.read_all_bodies(with_surfaces); },
               [&](Assembly& part) { take_bodies(part); });
+    // Parts have entered their own folders.
     sources_.meshes.enter(folder_);
     read_world(builder_);
     for (const std::unique_ptr<Assembly>& part : parts_)
@@ -79,6 +82,8 @@ void Assembly::take_bodies(Assembly& part)
     for (const Body& body : own.model().bodies()) builder_.model().add_body(relocated(body, part.to_));
     for (const auto& [name, body] : own.bodies())
         builder_.bodies()[part.to_.name(name)] = {part.to_.body(body.index), body.is_usable};
+    // As many as there are bodies: the outline of the part's world, which stands behind them, is taken by
+    // read_all_bodies().
     const auto join = [](auto& all, const auto& more, std::size_t n) {
         all.insert(all.end(), more.begin(), more.begin() + static_cast<std::ptrdiff_t>(n));
     };
@@ -122,6 +127,7 @@ StatedStart Assembly::all_stated()
     StatedStart all = stated_start(builder_);
     for (const std::unique_ptr<Assembly>& part : parts_) {
         StatedStart of_part = part->all_stated();
+        // joint[knee].rate of the part is joint[left.knee].rate here, with the prefix "left.".
         for (StartCoordinate& rate : of_part.rates) {
             rate.joint += part->first_joint_;
             rate.path.insert(rate.path.find('[') + 1, part->to_.prefix);
@@ -133,6 +139,7 @@ StatedStart Assembly::all_stated()
         }
         for (std::size_t b = 0; of_part.is_other && b < of_part.state.X.size(); ++b) {
             const std::size_t at = static_cast<std::size_t>(part->to_.first_body) + b;
+            // V are rates of the columns of X, which turn with the part and do not shift.
             all.state.X[at] = part->to_.by.of_configuration(of_part.state.X[b]);
             all.state.V[at] = part->to_.by.rotation * of_part.state.V[b];
         }
@@ -160,6 +167,7 @@ void Assembly::settle()
             const Joint& in_whole =
                 builder_.model().joints()[static_cast<std::size_t>(part->first_joint_) + j];
             for (std::size_t q = 0; q < joint.coordinates.size(); ++q)
+                // What coordinates are said to be where the bodies are by then: only the whole was led there.
                 joint.coordinates[q].at_stated = in_whole.coordinates[q].at_stated;
             for (std::size_t q = 0; q < joint.readings.size(); ++q)
                 joint.readings[q].at_stated = in_whole.readings[q].at_stated;
@@ -208,6 +216,8 @@ void Assembly::read_all_sensors(bool of_loads)
     if (of_loads && sources_.findings.n_errors() == 0) add_controller_sensors(builder_);
 }
 
+/// Bodies that hold states come behind all others, of the part as of the whole: its bodies are two runs of
+/// numbers, which Relocation::body() tells apart by `n_early`.
 void Assembly::read_all_controllers()
 {
     each_part(
@@ -269,6 +279,7 @@ void Assembly::read_model()
     read_all_points();
     read_all_joints();
     if (findings.n_errors() == 0) {
+        // A model that nothing has changed keeps its version, and parts then stand where they are stated.
         const std::uint64_t stated = builder_.model().version();
         move_bodies(builder_, all_stated());
         if (builder_.model().version() != stated) settle();

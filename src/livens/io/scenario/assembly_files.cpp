@@ -17,6 +17,7 @@ namespace {
 
 constexpr double orthonormal_slack = 1e-10;   // |D^T D - I|, as of bodies
 
+/// Directors that check_rotation() has let pass are made orthonormal: what they lack would skew all bodies.
 Relocation relocation_of(const Section& include)
 {
     return {include.text("prefix"),
@@ -79,6 +80,8 @@ Table include_table()
     return table;
 }
 
+/// Members are made one from the other: parameters, copies that are computed with them, the section of all.
+/// Where copies failed nothing is left to be read, and the part's table is taken, which needs no key.
 Assembly::Assembly(const Node& root, const std::string& file, const std::vector<Override>& overrides,
                    AssemblySources& sources)
     : sources_(sources), file_(file), parameters_(root.find("parameters"), overrides, sources.findings),
@@ -171,6 +174,7 @@ void Assembly::check_part()
                 "write the same in both, or leave it out here"});
 }
 
+/// Names with the prefix of a faulty include may be meant for what it would have brought: they are excused.
 void Assembly::open_all()
 {
     for (const Section& include : std::as_const(top_).sections("include")) {
@@ -181,6 +185,8 @@ void Assembly::open_all()
 }
 
 /// Null after an error.
+/// Number and depth are bounded before anything is read: files that include others twice, level by level,
+/// make no ring, and yet would double at each level.
 std::unique_ptr<Assembly> Assembly::open(const Section& include)
 {
     if (!include.is_valid() || !check_rotation(include)) return nullptr;
@@ -210,6 +216,8 @@ std::unique_ptr<Assembly> Assembly::open(const Section& include)
 }
 
 /// Empty after an error.
+/// Scanner and parser know lines and columns alone: what they find is gathered apart, and adopted with the
+/// number of the file, which all places of the tree get as well.
 std::optional<OpenedPart> Assembly::open_file(const Section& include)
 {
     Findings& findings = sources_.findings;

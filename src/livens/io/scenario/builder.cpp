@@ -20,6 +20,7 @@ constexpr std::size_t longest_part_name = 200;
 struct Spelling {
     std::string_view code, concept_word, toml;
 };
+// All entries count that have the code and whose concept the help names: see help_in_toml().
 constexpr Spelling spellings[] = {
     {"boundary-conditions", "the state at one end", R"(given = "state")"},
     {"boundary-method", "lobatto or mixed", R"(family = "lobatto" in [method])"},
@@ -154,6 +155,8 @@ InputError Builder::unknown_name(const std::string& kind, const std::string& nam
                        "there is no " + kind + " '" + name + "'", "", "", "", suggest(name, known)});
 }
 
+/// Where the path of the complaint has no name in brackets it is relative to `path`, which is the subject
+/// then. Messages that quote a name say of what they are, and need no subject.
 void Builder::report(const Complaint& complaint, const std::string& path)
 {
     if (complaint.code.empty()) return;   // unknown_name()
@@ -188,6 +191,7 @@ BodyReference Builder::find_body(const std::string& name, const SourceLocation& 
     std::vector<std::string_view> known;
     for (const Section& body : top.sections("body"))
         if (const Value* v = body.find("name")) known.push_back(v->text);
+    // Bodies of included files have no section here: the model has them, under their names with prefix.
     if (!top.sections("include").empty())
         for (const Body& body : model_.bodies())
             if (std::ranges::find(known, body.name) == known.end()) known.push_back(body.name);
@@ -209,6 +213,7 @@ bool Builder::find_pair(const Section& section, std::string_view self, BodyRefer
     first = find_body(between->texts[0], names[0].place, section);
     second = find_body(between->texts[1], names[1].place, section);
     if (between->texts[0] != between->texts[1]) return first.is_usable && second.is_usable;
+    // Of a name that is unknown find_body() has told.
     if (between->texts[0] == "world" || bodies_.count(between->texts[0]) > 0)
         findings_.error(names[1].place, self,
                         section.label() + " connects '" + between->texts[0] + "' with itself",

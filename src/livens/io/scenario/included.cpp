@@ -11,6 +11,8 @@
 
 namespace livens::inline io_internal {
 
+/// Of what a run has kept two lines a file, as kept() writes them: `include PATH`, `content TEXT`. Lines
+/// of meshes stand among them, which MeshStore reads.
 IncludedTexts::IncludedTexts(MeshSource source) : source_(std::move(source))
 {
     std::string path;
@@ -29,6 +31,7 @@ const std::string& IncludedTexts::find(const std::string& path)
         const auto kept = kept_.find(path);
         known = known_.emplace(path, kept != kept_.end() ? kept->second : read(path)).first;
     }
+    // At each call: a text that is included many times becomes as many parts.
     n_bytes_ += known->second.size();
     if (n_bytes_ > max_scenario_bytes)
         throw InputError({"include-limit", "",
@@ -38,6 +41,7 @@ const std::string& IncludedTexts::find(const std::string& path)
     return known->second;
 }
 
+/// At most one byte more than a scenario may have, by which find() refuses a longer file.
 std::string IncludedTexts::read(const std::string& path)
 {
     const std::filesystem::path file = find_file(source_, path, "include");

@@ -23,6 +23,8 @@ namespace livens {
 
 namespace {
 
+/// Bounds on the tables of this file, its copies of repeats among them, before anything of the model is made.
+/// What is included counts with them in read_model().
 bool check_counts(const Section& top, Findings& findings)
 {
     const int before = findings.n_errors();
@@ -136,6 +138,8 @@ private:
     std::vector<Override> overrides_;
 };
 
+/// The tree is read anew for each set of values: numbers of the file may decide about anything that is made
+/// of it, such as placements, masses and the lengths of rods.
 UnknownNumbers unknown_numbers(NumberedTree tree, const MeshSource& files,
                                const std::vector<Override>& overrides)
 {
@@ -158,6 +162,8 @@ void remember_unknowns(const NumberedTree& tree, Builder& builder)
 }
 
 /// Everything behind the parser. The scenario counts if there is no error.
+/// In this order: format, guesses of unknown numbers, includes and copies, the model, what [time] to [end]
+/// say; then what needs both, the method held against the model and the ends of time closed.
 void build(const Node& stated, TreePart part, const MeshSource& files, const ParameterValues& values,
            Scenario& scenario, Findings& findings)
 {
@@ -260,6 +266,8 @@ ScenarioResult io_internal::read_tree(const Node& root, std::string text, const 
     return result;
 }
 
+/// By the text, in which the values take the place of guesses: it is what a result keeps, and so the motion
+/// is that of its own scenario.
 std::shared_ptr<const Scenario> with_guesses(const Scenario& scenario, std::span<const double> values)
 {
     std::vector<std::string> names;
@@ -271,6 +279,8 @@ std::shared_ptr<const Scenario> with_guesses(const Scenario& scenario, std::span
     return read.scenario ? std::make_shared<const Scenario>(std::move(*read.scenario)) : nullptr;
 }
 
+/// A scenario keeps no places, so that its text is read once more, with the meshes and includes that it has
+/// kept. It was read without errors: the only one here is the complaint.
 Diagnostic diagnostic_of(const Scenario& scenario, const Complaint& complaint)
 {
     Findings findings;

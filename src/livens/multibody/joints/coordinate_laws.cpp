@@ -51,6 +51,7 @@ void check_rows(const std::vector<double>& coordinates, const std::vector<double
 }
 
 /// One round with as many rows before and behind as it takes to forget the ends.
+/// Row k of a round of n rows is row k - n floor(k / n), as many periods and rises on.
 TimeFunction periodic_spline(const std::vector<double>& at, const std::vector<double>& values, double period,
                              double rise)
 {

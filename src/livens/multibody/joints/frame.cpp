@@ -158,6 +158,8 @@ void multibody_internal::hold_spin(Joint& joint, const JointFrame& frame)
     joint.branches.back().label = "turn";
 }
 
+/// The line belongs to the body that was given first. Where start_joint() has exchanged bodies that is the
+/// second one, and the axis has been reversed.
 Slide multibody_internal::slide_of(const Joint& joint, const JointFrame& frame, bool exchanged)
 {
     if (exchanged)

@@ -89,6 +89,7 @@ void place_ends(Joint& joint)
 }
 
 /// Adds a span between two bodies.
+/// Its forms are the three components of the way between its points in world axes, which are linear in X.
 void add_span(ConstraintRow& row, const std::string& name, std::size_t k, const BodyPoint& a,
               const BodyPoint& b)
 {

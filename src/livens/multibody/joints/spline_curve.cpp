@@ -78,6 +78,7 @@ public:
             for (int k = 0; k < n_knots; ++k) values.push_back(point(k)[c]);
             add_component(c, knots, values);
         }
+        find_cells();
         for (int k = around; k + 1 < n_knots - around; ++k)
             for (int i = 0; i < steps_a_piece; ++i)
                 places_.push_back(knots[k] + (knots[k + 1] - knots[k]) * i / steps_a_piece);
@@ -98,17 +99,17 @@ public:
         const auto next = std::upper_bound(places_.begin() + 1, places_.end() - 1, s);
         const auto sample = static_cast<std::size_t>(next - places_.begin() - 1);
         CurvePoint here = shape(s);
-        here.normals[0] = carried(normals_[sample], places_[sample], s);
-        here.normals[1] = cross(unit(here.first), here.normals[0]);
+        const Vector3 along = unit(here.first);
+        here.normals[0] = is_flat_ ? unit(normals_[sample] - dot(normals_[sample], along) * along)
+                                   : carried(normals_[sample], places_[sample], s);
+        here.normals[1] = cross(along, here.normals[0]);
         return here;
     }
 
     /// Without normals.
     CurvePoint shape(double s) const
     {
-        const auto behind = std::upper_bound(pieces_.begin() + 1, pieces_.end(), s,
-                                             [](double at, const Piece& piece) { return at < piece.from; });
-        const Piece& piece = behind[-1];
+        const Piece& piece = pieces_[piece_at(s)];
         const double d = s - piece.from;
         CurvePoint here;
         for (int i = 0; i < 3; ++i) {
@@ -126,6 +127,32 @@ private:
         double from;
         std::array<double, 4> of[3];
     };
+
+    /// The last piece that begins at s or before, the first one for all that is before the knots: from the
+    /// first that lies in the cell of s, of as many cells as there are pieces.
+    std::size_t piece_at(double s) const
+    {
+        const double begin = pieces_[1].from, cell = (s - begin) * cells_per_length_;
+        if (!(cell > 0)) return s >= begin ? 1 : 0;
+        const auto last = first_piece_.size() - 1;
+        std::size_t piece =
+            first_piece_[cell < static_cast<double>(last) ? static_cast<std::size_t>(cell) : last];
+        while (piece + 1 < pieces_.size() && pieces_[piece + 1].from <= s) ++piece;
+        while (piece > 0 && pieces_[piece].from > s) --piece;   // by rounding of the cell
+        return piece;
+    }
+
+    void find_cells()
+    {
+        const std::size_t n = pieces_.size();
+        cells_per_length_ = static_cast<double>(n) / (pieces_.back().from - pieces_[1].from);
+        std::size_t piece = 1;
+        for (std::size_t cell = 0; cell < n; ++cell) {
+            const double from = pieces_[1].from + static_cast<double>(cell) / cells_per_length_;
+            while (piece + 1 < n && pieces_[piece + 1].from <= from) ++piece;
+            first_piece_.push_back(piece);
+        }
+    }
 
     void add_component(int c, const std::vector<double>& knots, const std::vector<double>& values)
     {
@@ -163,7 +190,7 @@ private:
             return Across{a, b, dot(n, t) * dot(here.second, b) / (norm(here.first) * norm(part))};
         };
         const Across there = across(until);
-        if (is_flat_) return there.a;
+        if (is_flat_) return there.a;   // no turn about the tangent: what at() has without this
         double angle = 0;
         for (std::size_t i = 0; i < rule_.points.size(); ++i)
             // The angle is an integral of a smooth function over an eighth of a piece, for which five Gauss
@@ -216,7 +243,9 @@ private:
             normals_.push_back(carried(normals_.back(), places_[i - 1], places_[i]));
     }
 
-    std::vector<Piece> pieces_;   ///< the first before the first knot
+    std::vector<Piece> pieces_;              ///< the first before the first knot
+    std::vector<std::size_t> first_piece_;   ///< of each cell
+    double cells_per_length_ = 0;
     Quadrature rule_ = gauss(5);
     bool is_closed_, is_flat_ = false;
     double first_ = 0, last_ = 0;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A stop is a driven row that stands still, begun by the event that its coordinate passes the limit, and
+// ended where its force would pull: theory.md, "Impacts".
 #include "livens/multibody/joints/stops.h"
 
 #include <cmath>
@@ -19,6 +21,7 @@ TimeFunction constantly(double value)
 }
 
 /// `look`: what the stop is of, of the coordinates; `terms` has these.
+/// A term is positive where its condition is true: here, as far as the coordinate is beyond the limit.
 int add_stop(Model& model, Joint stop, const StopLaw& law, EventTerms terms,
              std::function<double(std::span<const double> coordinates)> look)
 {
@@ -63,6 +66,8 @@ int add_coordinate_stop(Model& model, const std::string& name, const Joint& join
                     [](std::span<const double> q) { return q[0]; });
 }
 
+/// The condition sees the root of three displacements along axes of the first body, and so a length as the
+/// limit is one; the row is one of squares.
 int add_distance_stop(Model& model, const std::string& name, const BodyPoint& first, const BodyPoint& second,
                       const StopLaw& law, const Configurations& X)
 {

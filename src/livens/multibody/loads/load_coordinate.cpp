@@ -61,6 +61,8 @@ bool turns(const PairForm& form, bool by_j)
 
 }   // namespace
 
+/// Values count from where the bodies stand: an angle is turned to zero there, of others the offset takes off
+/// what they are.
 LoadCoordinate::LoadCoordinate(const JointCoordinate& coordinate, double at_stated, const Configurations& X)
     : at_start_(at_stated), offset_(at_stated)
 {
@@ -75,6 +77,8 @@ LoadCoordinate::LoadCoordinate(const JointCoordinate& coordinate, double at_stat
     if (!coordinate_.counts_turns()) offset_ -= coordinate_value(coordinate_, X);
 }
 
+/// Bodies become places in the load's list. A displacement is one form; an angle is a row with one function
+/// of its forms.
 void LoadCoordinate::place(Load& load, bool counts_turns)
 {
     const std::vector<int>& load_bodies = load.bodies;

@@ -96,6 +96,7 @@ struct Modulated {
     }
 
     /// The slopes of factors alone, and of coordinates as they stand.
+    /// The law writes slopes factor by factor, 2 m each: by values, then by rates of the m coordinates.
     std::vector<ProductSlopes> products(const LoadArguments& arguments) const
     {
         const std::size_t m = coordinates.size();

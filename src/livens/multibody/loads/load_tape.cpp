@@ -104,6 +104,7 @@ TapeVector LoadTape::at_instant(OfTime value)
     return {this, add({TapeKind::time, -1, -1, 3, static_cast<int>(times_.size()) - 1, 0})};
 }
 
+/// Arms are shared by all loads of the tape: the same point of a body is evaluated once.
 int LoadTape::find_arm(int side, const Vector4& w)
 {
     const int body = load_.bodies[static_cast<std::size_t>(side)];
@@ -176,6 +177,7 @@ int LoadTape::index_of(Function function)
     return index;
 }
 
+/// What has no place is the factor one, and costs no step.
 TapeNumber operator*(TapeNumber a, TapeNumber b)
 {
     if (a.place < 0) return b;
@@ -201,6 +203,7 @@ TapeVector operator+(TapeVector a, TapeVector b)
     return {a.tape, a.tape->add({TapeKind::sum, -1, a.place, b.place, -1, 0})};
 }
 
+/// Nothing is taken off for a constant zero, as for the world's origin.
 TapeVector operator-(TapeVector a, TapeVector b)
 {
     if (const Vector3* v = a.tape->constant(b); v != nullptr && *v == Vector3{}) return a;
@@ -228,6 +231,7 @@ int only_component(const Vector3& v)
     return only;
 }
 
+/// With a constant along one axis it is a component of the other, which is there already.
 TapeNumber dot(TapeVector a, TapeVector b)
 {
     const Vector3* c = a.tape->constant(a);
@@ -313,6 +317,8 @@ void watch(LoadTape& tape, const Expression& expression, const std::vector<TapeN
 
 }   // namespace
 
+/// At a break the time that expressions see is on the side of the instant, so that they take the piece of
+/// that side.
 RecordedLaw recorded_law(const std::vector<Expression>& expressions, const std::vector<LawRead>& reads,
                          const std::vector<double>& breaks, const TimeFunction& acts)
 {

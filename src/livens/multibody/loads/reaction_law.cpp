@@ -13,6 +13,8 @@
 
 namespace livens {
 
+/// A place in the list of loads until the model is known as a whole: no force, and readings that are no
+/// numbers.
 Load waiting(ReactionLaw law, int look_from)
 {
     Load load;
@@ -42,6 +44,8 @@ bool reads_reactions(const Model& model)
     return std::ranges::any_of(model.loads(), [](const Load& load) { return load.by_reactions != nullptr; });
 }
 
+/// Laws get the model without loads by reactions, which they solve together among themselves, and without
+/// what only looks at a motion.
 void bind_reaction_laws(Model& model)
 {
     if (!reads_reactions(model)) return;

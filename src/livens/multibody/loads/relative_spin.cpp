@@ -41,6 +41,7 @@ Matrix<6, 1> SpinDamping::rates(const LawArguments& at) const
 }
 
 /// With f by what is looked at: dw/dR_lm = 1/2 e_l x b_m', dw/dR'_lm = 1/2 b_m x e_l.
+/// The slopes of factor k stand from 2 n k on: n by values, then n by rates.
 void SpinDamping::operator()(const LawArguments& at, std::span<double> factors,
                              std::span<double> slopes) const
 {

@@ -178,6 +178,8 @@ struct Rope {
 };
 
 /// The bodies that it acts on, each once; behind them the world, if the rope is held there.
+/// A load has two bodies at least: of a rope that has one body alone the second is the world, where it is
+/// held (see check_rope()).
 void place_bodies(Load& load, const std::vector<BodyPoint>& over)
 {
     load.bodies.clear();

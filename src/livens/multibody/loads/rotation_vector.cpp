@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The rotation vector of a turn and its derivatives by the four forms that tell it, and the couple that acts
+// along it: theory.md, "Coordinates of joints", Bushing.
 #include "livens/multibody/loads/rotation_vector.h"
 
 #include <cmath>
@@ -63,6 +65,8 @@ void turn_of_sine(double sigma, double c, double* both)
     both[1] = 2 * p.by_sigma;
 }
 
+/// r_k = psi s_k and J_kl = dr_k/dq_l = 2 psi_sigma s_k s_l + psi delta_kl, J_k3 = psi_c s_k, with one more
+/// derivative carried along by dual numbers.
 Turn turn_of(const double* q)
 {
     const auto variable = [&](std::size_t i) {
@@ -91,6 +95,8 @@ Turn turn_of(const double* q)
     return turn;
 }
 
+/// tau = f + 1/2 r x f + k r x (r x f), k = (1 - x cot x) / 4 x^2 and x = |r| / 2, whose power along w is
+/// that of f along r'.
 Vector3 couple_of(const Vector3& f, const Vector3& r)
 {
     const double x2 = 0.25 * dot(r, r), x = std::sqrt(x2);

@@ -28,6 +28,7 @@ public:
     int size() const override { return size_; }
 
 protected:
+    /// Never waits: a box takes any number of letters, so that two ranks may send to each other at once.
     void put(int to, std::span<const double> values) override
     {
         const std::lock_guard lock(boxes_.mutex);
@@ -53,6 +54,8 @@ private:
 
 }   // namespace
 
+/// The caller is the first rank. A rank that throws wakes all others, which are lost then; what it has thrown
+/// comes out, not what became of them.
 void run_as_ranks(int n, const std::function<void(Ranks&)>& work)
 {
     LetterBoxes boxes;

@@ -168,6 +168,7 @@ public:
     }
     const Columns& free() const { return free_; }
     /// The shortest x with B x = c.
+    /// With B^T P = Q R of the pivoted QR: R^T y = P^T c and x = Q (y, 0).
     void solve(const Numbers& c, Numbers& x) const
     {
         for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -249,6 +250,7 @@ bool RankBorders::factorise(const RowsBetweenBorders& rows)
 }
 
 /// The rank before a border gets the rows of the one behind, and tells what both leave free.
+/// Where that fails all is told to be free, so that messages go on until all ranks know of it.
 bool RankBorders::solve_borders()
 {
     Parts& p = *parts_;
@@ -286,6 +288,8 @@ bool RankBorders::solve_borders()
     return is_done;
 }
 
+/// Unknowns of the chain are what each border leaves free, border after border, then those of all ranks. The
+/// memory of the rank's rows is given back here: their sums are enough for all that follows.
 bool RankBorders::make_chain(const RowsBetweenBorders& rows)
 {
     Parts& p = *parts_;

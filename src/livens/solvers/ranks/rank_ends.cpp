@@ -16,6 +16,8 @@ RankEnds::~RankEnds() = default;
 
 int RankEnds::n_unknowns() const { return 2 * n_free_ * (ranks_.size() + 1) + n_others_; }
 
+/// T = Z_0^T Z_N of this rank's first and of the last node of the rank before, which is orthogonal, as both
+/// bases span the same motions (theory.md, "Lobatto windows on ranks"); the first rank keeps its own basis.
 void RankEnds::meet(int n_numbers, const std::vector<double>& at_first, const std::vector<double>& at_last)
 {
     const auto f = static_cast<std::size_t>(n_free_), n = static_cast<std::size_t>(n_numbers);
@@ -30,6 +32,7 @@ void RankEnds::meet(int n_numbers, const std::vector<double>& at_first, const st
             for (std::size_t j = 0; j < f; ++j) turned_[i * f + j] += at_first[k * f + i] * before[k * f + j];
 }
 
+/// Unknowns at the first node are x_0 = T x of the chain's, so that a row's coefficients a become a T.
 void RankEnds::turn(const double* from, double* to, bool is_row) const
 {
     const auto f = static_cast<std::size_t>(n_free_);
@@ -41,6 +44,9 @@ void RankEnds::turn(const double* from, double* to, bool is_row) const
         }
 }
 
+/// A rank's columns are places at its first and last node, momenta at these, others; in the chain places and
+/// momenta of one border stand together. Rows get the largest entry 1: pivots are chosen among rows of all
+/// ranks, whose units differ.
 bool RankEnds::factorise(std::span<const double> rows)
 {
     const auto n = static_cast<std::size_t>(n_columns()), f = static_cast<std::size_t>(n_free_);

@@ -48,6 +48,7 @@ void store(const SparseMatrix& A, const std::vector<OutsideEntry>& outside, int 
 RankFactors::RankFactors(Ranks& ranks) : ranks_(ranks), parts_(std::make_unique<Parts>(ranks)) {}
 RankFactors::~RankFactors() = default;
 
+/// All ranks hear whether each has eliminated its columns before any goes on: the chain needs rows of all.
 bool RankFactors::factorise(const SparseMatrix& A, const std::vector<OutsideEntry>& outside, int n_columns,
                             const ChainPlaces& places)
 {
@@ -75,6 +76,7 @@ void RankFactors::apply_inverse(std::span<const double> b, std::span<double> x)
     p.stretch.backward(p.y.data(), x.data());
 }
 
+/// Once refined by the rows as they are: borders leave out what their sums see of others, a share of 1e-10.
 void RankFactors::solve(std::span<const double> b, std::span<double> x)
 {
     Parts& p = *parts_;

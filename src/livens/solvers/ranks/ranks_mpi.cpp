@@ -31,6 +31,8 @@ public:
     PetscChain(const PetscChain&) = delete;
     PetscChain& operator=(const PetscChain&) = delete;
 
+    /// A direct solution without iterations (KSPPREONLY); memory that ends is an error of its own, no
+    /// singular chain.
     bool factorise(const ChainRows& own) override
     {
         destroy();

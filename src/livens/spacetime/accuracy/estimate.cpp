@@ -135,6 +135,8 @@ void name_law(const Solution& solution, ErrorEstimate& found)
     }
 }
 
+/// A march is followed in pieces, each from the state where the last one has ended, in the direction of the
+/// march; a window of all elements, and what counts turns for events, at once.
 void measure_error(const Model& model, const Problem& problem, const Method& method,
                    const SolveOptions& options, Solution& solution)
 {

@@ -39,6 +39,7 @@ std::vector<std::string> missed_conditions(const Model& model, const Problem& pr
 }
 
 /// A motion that ends as it began goes on as it did, unless what drives it has another period.
+/// It may be off by what a velocity that is rounded at its start moves at its end: `arrival` is in s.
 std::string another_period(const Model& model, const Problem& problem, const SolveOptions& options,
                            const Solution& solution)
 {

@@ -32,6 +32,7 @@ KnownElements::KnownElements(const Motion& motion, const ModelTables& tables, co
     spins_.resize(tables.bodies.size());
 }
 
+/// Into an element that is much longer than the one before, its polynomial would be followed too far.
 void KnownElements::open(int element)
 {
     const double start = motion_.mesh.ends[element], end = motion_.mesh.ends[element + 1];
@@ -80,6 +81,8 @@ void KnownElements::look_at_spins(bool goes_on)
     }
 }
 
+/// Where the motion is, and what the neighbour's polynomial of the element before says more than the motion's
+/// own one: what both miss alike drops out.
 void KnownElements::guess(const double* apart, double* place)
 {
     const std::size_t n = place_.size();

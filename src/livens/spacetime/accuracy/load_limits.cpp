@@ -44,6 +44,8 @@ double first_instant(const Motion& motion, const Look& look)
 }
 
 /// When; nan: never.
+/// Beyond half a turn a rotation vector goes on at the other side: two looks at vectors of more than a
+/// quarter of a turn that point apart have that between them.
 double too_far_at(const Load& load, const std::array<const LoadReading*, 3>& readings, const Motion& motion,
                   double most)
 {
@@ -66,6 +68,7 @@ struct WatchedAngle {
     const JointCoordinate* q;
 };
 
+/// The angle of one axis has a value all round; those of three axes and rotation vectors have not.
 std::vector<WatchedAngle> watched_angles(const Model& model)
 {
     std::vector<WatchedAngle> all;

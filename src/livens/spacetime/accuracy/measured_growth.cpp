@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// docs/theory.md, "The horizon": What rounding does.
 #include "livens/spacetime/accuracy/measured_growth.h"
 
 #include <algorithm>
@@ -14,6 +15,7 @@ constexpr double half_spacing = 0x1p-53;   // of numbers, by half
 
 }   // namespace
 
+/// Twice half a spacing, or what the iteration leaves as a rule, a tenth of its tolerance.
 double rounded_by(double tolerance)
 {
     constexpr double some = 2, left = 0.1;
@@ -27,6 +29,7 @@ std::vector<double> told_of_rounding(const Growth& grown, double tolerance)
     return told;
 }
 
+/// What was measured, else the growth of half a spacing at the start. It never falls.
 std::vector<double> grown_rounding(std::span<const double> growth, std::span<const double> measured)
 {
     std::vector<double> grown;
@@ -46,6 +49,7 @@ double told_without_rounding(const ErrorEstimate& found)
     return std::max(least, share * found.largest);
 }
 
+/// Places and turns, where growth is measured; velocities are left as they are.
 void count_rounding(const Model& model, std::span<const double> rounding, const TimeMesh& mesh,
                     ErrorEstimate& found)
 {

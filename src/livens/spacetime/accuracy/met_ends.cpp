@@ -84,6 +84,7 @@ public:
     }
 
 private:
+    /// m/s, of points and of the ends of directors that are as long as the model.
     double fastest(const State& state) const
     {
         double speed = 0;
@@ -109,6 +110,8 @@ private:
             }
     }
 
+    /// Six numbers in world axes, moments about the reference point, by what the largest speed makes of the
+    /// body: M v, and M v times the reach of its mass.
     template <class Take>
     void compare_momenta(int b, const Take& take) const
     {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// docs/theory.md, "The horizon": where perturbations begin, and Differences, made small as a whole.
 #include "livens/spacetime/accuracy/perturbations.h"
 
 #include <algorithm>

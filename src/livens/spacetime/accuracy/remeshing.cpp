@@ -72,6 +72,8 @@ std::vector<double> ElementScales::lengths(int degree, double error) const
     return lengths;
 }
 
+/// The number of wanted elements up to t is piecewise linear; between two stops it is divided into equal
+/// parts and solved for t.
 std::vector<double> ElementScales::ends(int degree, double error, std::span<const double> stops) const
 {
     const std::vector<double> wanted = lengths(degree, error);
@@ -108,6 +110,7 @@ TimeMesh halved(const TimeMesh& mesh)
     return fine;
 }
 
+/// Ends that were put at bends before are stepped over: a piece of both elements beside one finds its own.
 std::vector<double> bends_of(const Stated& of, const Motion& motion, const std::vector<double>& known,
                              const Lobatto& lobatto, SolveOptions options)
 {

@@ -112,6 +112,8 @@ void spacetime_internal::add_events(const Model& model, const Motion& motion, Er
     }
 }
 
+/// Of a form y with y^T M y = 1 and the rate w the energy E is an amplitude of sqrt(2 E) y / w and a speed of
+/// sqrt(2 E) y. Forms that dampers take faster than they vibrate die in truth, too.
 void spacetime_internal::add_lost_vibrations(const Model& model, const Motion& motion, ErrorEstimate& found)
 {
     if (!motion.damps() || found.empty()) return;
@@ -140,6 +142,8 @@ void spacetime_internal::add_lost_vibrations(const Model& model, const Motion& m
     found.find_largest(motion.mesh);
 }
 
+/// J lengths in place, and J by the length of the element in rates; told at both of its ends, as estimates
+/// have no places between.
 void spacetime_internal::add_inside(const Model& model, const Motion& motion,
                                     const std::vector<double>& instants, ErrorEstimate& found)
 {

@@ -158,6 +158,7 @@ const ElementRule& rule_of(const Method& method)
     return element_rule(Points::lobatto, std::get<Lobatto>(method).degree);
 }
 
+/// Gauss and Jordan with pivots by rows, in long double: what is rounded here is in every step of a march.
 std::vector<double> inverse_of_k(const ElementRule& rule)
 {
     using Wide = long double;

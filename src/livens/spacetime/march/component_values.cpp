@@ -57,6 +57,8 @@ double start_of_turns(const Ends& ends, const StateQuantity& quantity)
     return quantity.coordinate.at_stated;
 }
 
+/// An angle at the end is followed over the instants, taken in the turn that is nearest to the one before:
+/// between two of them it must change by less than half a turn.
 std::vector<double> values_in(const Model& model, const Ends& ends,
                               const std::function<State(double t)>& motion,
                               const std::vector<double>& instants)
@@ -84,6 +86,7 @@ std::vector<double> values_in(const Model& model, const Ends& ends,
     return values;
 }
 
+/// Angles are followed over all nodes: element ends alone may be more than half a turn apart.
 std::vector<std::string> unmet_components(const Model& model, const Ends& ends, const Motion& motion)
 {
     if (ends.components.empty() || motion.n_elements() == 0) return {};

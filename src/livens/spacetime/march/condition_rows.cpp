@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// theory.md, "Conditions by component": rank is judged in numbers about 1, whatever the units.
 #include "livens/spacetime/march/condition_rows.h"
 
 #include <algorithm>
@@ -15,6 +16,9 @@ constexpr double far_enough = 0.3;   // lengths and radians, from the guesses to
 
 }   // namespace
 
+/// Steps go along free motions by scattered shares of `far_enough`, momenta are those of free motions with
+/// scattered shares of `rate`. Where the joints do not close, a place half as far away is tried, up to twelve
+/// times.
 void place_about(const EndPoint& from, const ModelTables& tables, double rate, Scatter& scatter, EndPoint& to)
 {
     const int f = tables.freedoms(), n = tables.n_twists;
@@ -31,6 +35,9 @@ void place_about(const EndPoint& from, const ModelTables& tables, double rate, S
         for (double& value : y) value *= 0.5;
 }
 
+/// Columns: free motions and the momenta along them at the start, f and f, then likewise at the end, then
+/// unknown numbers. Columns are divided by the size of their free motion (momenta by that and the duration),
+/// rows by the unit of their quantity.
 DenseMatrix rows_at(const std::array<const ModelTables*, 2>& tables, const std::vector<Condition>& conditions,
                     const std::array<const EndPoint*, 2>& points, double duration,
                     const DenseMatrix& by_numbers)
@@ -59,6 +66,9 @@ DenseMatrix rows_at(const std::array<const ModelTables*, 2>& tables, const std::
     return rows;
 }
 
+/// Gram and Schmidt, each row twice: what one pass leaves of a row that is nearly dependent is rounding. A
+/// row below 1e-3 is compared with that and not with its own norm, or the rounding of a row that is zero
+/// would count as new.
 std::vector<Remainder> remainders(const DenseMatrix& rows)
 {
     std::vector<Remainder> all;

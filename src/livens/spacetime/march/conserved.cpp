@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// theory.md, "Conditions by component": Periodic motions, Relative periodic motions.
 #include "livens/spacetime/march/conserved.h"
 
 #include <algorithm>
@@ -29,6 +30,7 @@ std::vector<Matrix34> stated_in(const Model& model)
 }
 
 /// Along this axis, or about it.
+/// Of P = V m the first column is the linear momentum; the angular one is (phi - at) x P_0 + sum d_a x P_a.
 StateQuantity momentum(const Model& model, const std::string& name, const Vector3& axis, const Vector3& at,
                        bool is_angular)
 {
@@ -96,6 +98,8 @@ struct Change {
     double by_rates = 0, by_accelerations = 0;
 };
 
+/// Four-point differences along V with rates held, and along A = X'' with places held. Their sum is the rate
+/// of the quantity; what each comes to by itself tells how large a sum would be that is not zero.
 Change change_of(const StateQuantity& quantity, Bodies stated, const EndPoint& at, double step)
 {
     constexpr std::array<std::array<double, 2>, 4> rule{
@@ -124,6 +128,7 @@ State turned_state(const AxisTurn& turn, State state)
 
 }   // namespace
 
+/// Forces are compared to the bit: what does not see the time computes the same numbers at every instant.
 bool depends_on_time(const ModelTables& tables, const std::deque<EndPoint>& places, double start,
                      double duration)
 {
@@ -147,6 +152,8 @@ bool depends_on_time(const ModelTables& tables, const std::deque<EndPoint>& plac
     return false;
 }
 
+/// Kept is what all places keep. What is kept besides is independent of those before where one place says so:
+/// gradients may be parallel at a single place by chance.
 std::vector<StateQuantity> conserved_quantities(const ModelTables& tables, const std::deque<EndPoint>& places,
                                                 double duration, const std::optional<AxisTurn>& turn)
 {
@@ -174,6 +181,7 @@ std::vector<StateQuantity> conserved_quantities(const ModelTables& tables, const
     return kept;
 }
 
+/// By 1 rad, whose multiples come near every turn: what is alike after that is alike after any.
 bool is_symmetric_about(const ModelTables& tables, const std::deque<EndPoint>& places, const AxisTurn& turn)
 {
     AxisTurn some = turn;
@@ -196,6 +204,8 @@ bool is_symmetric_about(const ModelTables& tables, const std::deque<EndPoint>& p
     return true;
 }
 
+/// With the gradients of the n quantities as rows of D, and e that of what is conserved, both by free motions
+/// and momenta at the start, D^T w = e. Only the first n = 2 f columns of the rows are of the start.
 std::vector<std::vector<double>> unfolding(const ModelTables& tables, const EndPoint& start,
                                            const std::vector<Condition>& alike,
                                            const std::vector<StateQuantity>& conserved, double duration)

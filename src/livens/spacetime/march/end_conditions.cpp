@@ -15,6 +15,9 @@ MissedConditions::MissedConditions(const ModelTables& tables, const Ends& ends)
     for (const bool last : {false, true}) quantities_[last ? 1 : 0] = quantities_at(ends.components, last);
 }
 
+/// Rows are what is wanted less what is found. An angle at the start is taken in the turn of its value;
+/// one at the end is followed from the start; of a change that forgets turns the part within half a turn
+/// counts.
 bool MissedConditions::compare(const EndPoint& first, const EndPoint& last, double duration,
                                const Followed& followed)
 {
@@ -59,6 +62,8 @@ std::vector<double> MissedConditions::roundings() const
     return all;
 }
 
+/// A condition of both ends is the value at the end less that at the start. Of an end that a condition does
+/// not ask zeros are set and not multiplied, since a derivative there may be no number.
 DenseMatrix MissedConditions::derivatives(bool last, const EndPoint& point,
                                           const ConstraintBasis& basis) const
 {
@@ -101,6 +106,8 @@ void EndConditions::move(std::span<const double> dp, double damping)
         for (std::size_t i = 0; i < n; ++i) current_[end][i] = kept_[end][i] + damping * dp[end * n + i];
 }
 
+/// Momenta become what joints leave of them at the places at hand, so that what is kept belongs to the chart
+/// of the point where it is kept.
 bool EndConditions::evaluate(const std::array<EndPlaces, 2>& ends, const MissedConditions::Followed& followed)
 {
     for (std::size_t end = 0; end < 2; ++end) {
@@ -120,6 +127,9 @@ std::vector<double> EndConditions::roundings() const
     return all;
 }
 
+/// Closing rows have 4 f columns: free motions at the start and at the end, then momenta along them at the
+/// start and at the end. Of a phase they are the unit matrix for place and momentum at its start ("Phases
+/// between conditions").
 void EndConditions::differentiate(const std::array<const ConstraintBasis*, 2>& bases)
 {
     const int f = tables_.freedoms(),
@@ -154,6 +164,7 @@ void EndConditions::to_momenta(const double* along, double* dp) const
     std::copy_n(along + 2 * f, n_joins() + ends_.n_numbers, dp + 2 * n);
 }
 
+/// A number that is none stays, whatever the other end has.
 double EndConditions::size_of(std::span<const double> dp) const
 {
     const auto n = static_cast<std::size_t>(tables_.n_twists);

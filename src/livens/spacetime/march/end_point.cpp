@@ -50,6 +50,8 @@ bool EndPoint::place(double t, const double* X, const double* X_low, const std::
     return instant_.prepare(state_, tables_.independent) && finish(momenta);
 }
 
+/// P = V m of each body as the six numbers N^T P about its reference point; a place off the joints is pulled
+/// onto them while these stay what they are.
 bool EndPoint::place(const State& given)
 {
     std::vector<double> momenta(momenta_.size());
@@ -89,6 +91,8 @@ bool EndPoint::place_moved(const EndPoint& from, const double* scaled_twist,
     return instant_.prepare(state_, from.state_.held.rows) && instant_.close(state_) && finish(momenta);
 }
 
+/// The instant has moments about centres of mass, where the mass matrix has no mixed part; the chart has them
+/// about reference points. What is between the two is the projection onto what joints and drives allow.
 bool EndPoint::finish(const std::vector<double>& momenta)
 {
     std::vector<double> lambda(tables_.rows.size()), rates(12 * X_.size());
@@ -126,6 +130,7 @@ std::vector<Matrix34> EndPoint::accelerations() const
     return all;
 }
 
+/// Q e with the unit vector e of rank + j: the last f columns of Q span what the joints leave free.
 void EndPoint::free_motion(const ConstraintBasis& basis, int j, double* scaled_twist) const
 {
     std::fill_n(scaled_twist, tables_.n_twists, 0.0);
@@ -159,6 +164,7 @@ double EndPoint::size_of_momenta(std::vector<double> momenta) const
     return size_of(maps(), y.data());
 }
 
+/// N^T (N xi m) for the twist xi of the free motion, about reference points.
 void EndPoint::momenta_along(const ConstraintBasis& basis, const double* maps, int j, double* momenta) const
 {
     const std::size_t size = state_.X.size();

@@ -90,6 +90,7 @@ bool is_over_phases(const Model& model, const Problem& problem)
     return is_from_state || (model.has_events() && !given.has_state());
 }
 
+/// Asked in the middle of the first or the last phase, away from instants at which joints begin or end.
 Model acting_at_end(const Model& model, double start, double end, bool last)
 {
     if (!model.has_events()) return model;
@@ -106,6 +107,8 @@ Problem with_prepared(Problem problem)
     return problem;
 }
 
+/// The start is closed last: each known end says which rows are independent, and where both are known those
+/// of the start serve.
 TriedEnds try_close_ends(const Model& model, const Problem& problem, double start, double end,
                          StartPolicy policy)
 {

@@ -9,12 +9,15 @@
 
 namespace livens {
 
+/// A bend that was found ends the element if it lies ahead. Until it is met no element is longer than
+/// `longest_`: one that was too long would step over the bend once more.
 double EventLocator::end(double start, double wanted)
 {
     wanted_ = std::min(wanted, start + longest_);
     return at_ > start && at_ < wanted_ ? at_ : wanted_;
 }
 
+/// An end that was expected counts as found: moves() corrects it, or lets it go where nothing bends.
 void EventLocator::begin(double end)
 {
     if (is_found(end) || !std::ranges::binary_search(expected_, end)) return;
@@ -22,6 +25,8 @@ void EventLocator::begin(double end)
     is_expected_ = true;
 }
 
+/// The way of an element that ends at a bend is followed beyond its end, as the bend may lie behind it; that
+/// of any other to its end alone. The new end lies by `margin` before the bend.
 bool EventLocator::moves(Window& window, double start, double end)
 {
     if (n_crowded_ >= most_crowded) return false;
@@ -41,6 +46,7 @@ bool EventLocator::moves(Window& window, double start, double end)
     return at_ < wanted_;
 }
 
+/// Counts elements in succession that are tiny, and ends that crowd, by which marches on a jump are seen.
 bool EventLocator::accepted(double start, double end)
 {
     const bool was_found = is_found(end);

@@ -49,6 +49,9 @@ FixedMotion fixed_motion(const Model& model, const State& place, const std::vect
 
 }   // namespace
 
+/// One condition for each free motion at the stated place, a basis that is held there: one that is made anew
+/// at each iterate converges from fewer guesses. Each is scaled so that the momentum of its own free motion
+/// comes out as the speed of that motion, in m/s.
 std::vector<Condition> given_momenta(const ModelTables& tables, const State& stated, Condition::At at)
 {
     EndPoint point(tables), moving(tables);

@@ -94,6 +94,8 @@ void March::run()
     add_notes(report_, counts_);
 }
 
+/// Bends come first: an end that moves to a bend makes the solution void, so nothing is compared, closed or
+/// refused before. Singular positions come next: their remedy is another than that of a refusal.
 bool March::advance(const Elements& of)
 {
     // the report says why a window cannot be opened, or was closed to an end that is no state to go on from
@@ -116,6 +118,8 @@ bool March::advance(const Elements& of)
     return left.size() > 0 ? failed() : goes_on(outcome);
 }
 
+/// The window's own iteration, then Newton's from its own guess, then from one proposal after the other. If
+/// all of them fail it is the first run of Newton's that is told, with the iterations of all.
 NewtonReport March::attempt(const Elements& of)
 {
     NewtonReport outcome, first;
@@ -181,6 +185,8 @@ bool March::ends_at_bend(const Elements& of)
     return true;
 }
 
+/// The instant that is told is that of the largest distance, or, once one is doubtful, that of the first of
+/// these.
 void March::compare(const Elements& of)
 {
     const auto distance_at = [&](int end) {
@@ -352,6 +358,8 @@ std::string March::locking_in_words() const
     return now == start ? "" : options_.locking(motion->at_end(start), motion->at_end(now));
 }
 
+/// Of a march that finds its lengths: as many as there will be if the rest of the time goes on like what is
+/// done; 0 before anything is.
 int March::n_elements() const
 {
     if (options_.controller == nullptr) return mesh_.n_elements();

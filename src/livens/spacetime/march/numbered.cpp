@@ -70,6 +70,9 @@ std::vector<double> NumberedProblem::guesses() const
     return all;
 }
 
+/// Anchors are found anew in the rebuilt model and paired with those of the stated one by their order, so
+/// there must be as many, and the same of them events of joints. Between two of them the mesh is stretched
+/// ("Unknown numbers", Time).
 NumberedProblem::Instance NumberedProblem::at(std::span<const double> values) const
 {
     const auto n = static_cast<std::size_t>(n_stated());
@@ -97,6 +100,7 @@ NumberedProblem::Instance NumberedProblem::at(std::span<const double> values) co
     return made;
 }
 
+/// The model itself, by a pointer that does not own it.
 Rebuilt NumberedProblem::as_it_is() const
 {
     const auto n = static_cast<std::ptrdiff_t>(n_given());
@@ -125,6 +129,8 @@ void NumberedProblem::put_components(const Rebuilt& rebuilt, std::span<const dou
     }
 }
 
+/// Where two steps on either side would pass a bound, five points on the other side are taken; their step is
+/// short enough for the last of them to keep within the bound there.
 std::vector<NumberedProblem::Sample> NumberedProblem::samples(int i, double value) const
 {
     // the derivative of the polynomial through these: between them, or at the first one

@@ -22,6 +22,7 @@ constexpr double shift = 0.1;
 
 }   // namespace
 
+/// Ends of windows to come wait on a stack: a remedy that divides a window puts one more on top.
 GivenMesh::GivenMesh(TimeMesh& mesh, ElementMonitor& monitor, const DivisionOptions& options)
     : mesh_(mesh), monitor_(monitor), options_(options), most_divided_(200 + 4 * mesh.n_elements())
 {
@@ -84,6 +85,7 @@ void GivenMesh::avoid(const Elements& of, RankLoss loss)
     far_ends_.back() = mesh_.ends[far(of)] -= options_.direction * shift * length;
 }
 
+/// In two halves, of which the near one comes first: the far end is on the stack already.
 bool GivenMesh::reject(const Elements& of, double, bool can_help, SolveReport& report)
 {
     if (!can_help || !may_shorten(of)) return false;
@@ -139,6 +141,7 @@ void AdaptiveElements::accepted(const Elements& of, const AcceptedElements& clos
     if (outcome.is_dearer_than_short) controller_.too_dear(length);
 }
 
+/// The last window takes a rest of fewer than `shortest` elements along.
 std::vector<int> divide(int n_elements, int length, int shortest)
 {
     if (length <= 0) length = n_elements;

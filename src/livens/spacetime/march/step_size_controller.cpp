@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Lengths by the velocity jump J: docs/theory.md, "To an accuracy" and "The local error".
 #include "livens/spacetime/march/step_size_controller.h"
 
 #include <algorithm>
@@ -58,6 +59,8 @@ StepSizeController::StepSizeController(Points points, int degree, double toleran
       stops_(std::move(stops))
 {}
 
+/// A stop that is at most 2 percent beyond the length is reached at once; where no more than three elements
+/// are left to it they are made alike, so that none of them is a sliver.
 double StepSizeController::next_end(double t) const
 {
     const double stop = *std::upper_bound(stops_.begin(), stops_.end() - 1, t);
@@ -97,6 +100,7 @@ double StepSizeController::largest_jump(double start, double end) const
     return is_sampled ? std::min(largest_jump_, sampled_.second) : largest_jump_;
 }
 
+/// 0.8 h (tau / e)^(1 / (2 p + 1)), of radau ^(1 / 2 p); how far it may go is for those who ask.
 double StepSizeController::suggestion(double length, double jump) const
 {
     const double error = local_error(points_, degree_, jump);
@@ -112,6 +116,8 @@ double StepSizeController::trend_to(double scale)
     return std::clamp(scale / before, steepest, 1.0);
 }
 
+/// `whole` is the length that the error and its trend allow, `most` what the steps of the iteration do. What
+/// the latter alone take away is held_back_.
 void StepSizeController::accepted(double length, double jump, int steps, bool has_factor)
 {
     // an element that a stop cut short says as much as a whole one, but not beyond what was tried before
@@ -148,6 +154,8 @@ void StepSizeController::too_dear(double length)
     length_ = std::min(length_, blind_.first);
 }
 
+/// An element that saw nothing of the motion says nothing of the right length either: it is halved, and those
+/// behind it stay below 0.8 of its length for a while. Else its jump tells, 0.3 to 0.9 of the length.
 bool StepSizeController::rejected(double length, double jump, double most)
 {
     if (most == 0) most = largest_jump_;
@@ -170,6 +178,8 @@ bool StepSizeController::ascends() const
     return length_ > 4 * std::numeric_limits<double>::epsilon() * latest;
 }
 
+/// With the geometric mean of the scales H = h J^(-1 / (p + 1)), which do not depend on lengths: an element
+/// of the length H J_tau^(1 / (p + 1)) has the jump J_tau that loses the tolerance.
 double StepSizeController::mean_length(int degree, double tolerance) const
 {
     if (seen_.n_accepted == 0) return 0;
@@ -177,6 +187,7 @@ double StepSizeController::mean_length(int degree, double tolerance) const
     return safety * scale * power(velocity_jump_of(points_, degree, tolerance), 1.0 / (degree + 1));
 }
 
+/// (h / h_tau)^(2 p + 1) by geometric means of both; 1 where stops rule the lengths.
 double StepSizeController::lost(const TimeMesh& mesh) const
 {
     if (!seen_.tells_length) return 1;

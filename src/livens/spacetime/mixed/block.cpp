@@ -17,6 +17,7 @@ constexpr int least_shared_columns = 1000;   // of a matrix, that a thread takes
 
 }   // namespace
 
+/// Along time first ("The chain", Stretches); what that refuses has the general LU.
 bool BlockFactors::factorise(const SparseMatrix& A, bool is_new, std::span<const int> cuts)
 {
     is_general_ = false;
@@ -39,6 +40,7 @@ void BlockFactors::apply_inverse(std::span<const double> b, std::span<double> x)
     is_general_ ? general_.solve(b, x) : along_time_.solve(b, x);
 }
 
+/// With one step of refinement.
 void BlockFactors::solve(const SparseMatrix& A, std::span<const double> b, std::span<double> x)
 {
     missed_.resize(b.size());

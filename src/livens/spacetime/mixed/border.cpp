@@ -88,6 +88,8 @@ double Border::followed(const FieldSpace& space, const Fields& fields, const Nam
     return last.now();
 }
 
+/// Conditions are evaluated before rows: the momenta that close the law are those that joints leave at the
+/// places at hand.
 bool Border::evaluate(Equations& equations, const Fields& fields)
 {
     const FieldSpace& space = equations.space();

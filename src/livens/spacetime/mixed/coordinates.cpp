@@ -35,6 +35,7 @@ void refuse_singular(const Body& body)
 
 }   // namespace
 
+/// The Hessian of a form is K x 1_3: an entry by two columns of X stands there for each of three components.
 Coordinates::Coordinates(const ModelTables& the_tables) : tables(the_tables), rows(the_tables.independent)
 {
     for (int b = 0; b < static_cast<int>(tables.bodies.size()); ++b) {
@@ -128,6 +129,7 @@ void Coordinates::forces(double t, const double* X, const double* V, const doubl
     }
 }
 
+/// [m G^T; G 0] (X'', lambda) = (F, -curvature), sparse; of few rows their Schur complement, dense.
 std::vector<double> Coordinates::multipliers(const State& state) const
 {
     const int n = size + n_rows();

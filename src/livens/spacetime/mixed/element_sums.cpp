@@ -6,6 +6,8 @@
 
 namespace livens::mixed {
 
+/// A block of 12 x 12 for each body that a load acts on and each that it depends on; likewise of rows that
+/// are no quadratic forms, whose Hessians are not constant. The world has no coordinates.
 LoadSums::LoadSums(const FieldSpace& space) : space_(space)
 {
     const Coordinates& m = space.coordinates;
@@ -31,6 +33,7 @@ void LoadSums::clear()
     sums_.assign(n * n * blocks_.size() * 144, 0.0);
 }
 
+/// Blocks of one load stand side by side, so that its tangent is made once a point.
 void LoadSums::add(const FieldSample& sample, int e, int g)
 {
     const Coordinates& m = space_.coordinates;

@@ -44,6 +44,8 @@ TurningMomentum::TurningMomentum(const Body& body, const double* momenta)
     if (!is_point_) L_ = {momenta[3], momenta[4], momenta[5]};
 }
 
+/// v and w follow from p and L by the 6 x 6 inertia about the reference point, nan where that is singular. By
+/// the directors they change such that p and L stay; the place of the body is in none of them.
 Matrix34 TurningMomentum::at(const Matrix34& X, Matrix<12, 12>* tangent) const
 {
     if (tangent != nullptr) *tangent = {};

@@ -150,6 +150,8 @@ void Equations::add_boundary(const Fields& fields, std::vector<double>& r) const
     }
 }
 
+/// Strong: the value of the field. Natural: what is given, or what the row of the end defines, which is not
+/// solved then.
 std::vector<Matrix34> Equations::end_momentum(const Fields& fields, bool at_end) const
 {
     const Coordinates& m = space_.coordinates;

@@ -31,6 +31,8 @@ void MatrixPattern::end_element()
     first_of_element_ = first_of_ends_ = places_.size();
 }
 
+/// `times` more elements like the last one, each `stride` rows and columns further on than the one before.
+/// What is collected behind them has `shift_` taken off its numbers, as if they were not there.
 void MatrixPattern::repeat(int times, int stride, int column)
 {
     const PlacedElement last = elements_.back();
@@ -81,6 +83,8 @@ void MatrixPattern::take_offsets()
             if (places_[k].second >= cut.column) slots_[k] += cut.times * cut.entries;
 }
 
+/// Up to a cut columns are copied as they are; then the last `stride` of them `times` more; then what is
+/// behind, with rows and values that are so many further on.
 void MatrixPattern::draw_out(int size, const SparseMatrix& short_J, SparseMatrix& J) const
 {
     const std::vector<int>& starts = short_J.column_starts;

@@ -182,6 +182,8 @@ void MotionOfBlocks::append_block(const Block& block, bool is_first, Motion& mot
     append_node(block.X.size() - n, block.P_end);
 }
 
+/// At ends of blocks the momentum of the law has a part in the range of G^T, so velocities there are the
+/// nearest that joints allow; between they are P m^-1 of the field.
 void MotionOfBlocks::append_end(const double* X, const std::vector<Matrix34>& P, bool of_block,
                                 Motion& motion) const
 {

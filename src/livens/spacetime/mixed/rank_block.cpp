@@ -9,6 +9,8 @@
 
 namespace livens::mixed {
 
+/// At each border the chain sees the numbers of the function there and as many transfers, in one order in
+/// both ranks. A transfer stands in one row with +1 at the end of a rank and -1 at the start of the next.
 RankBlock::RankBlock(Equations equations, Ranks& ranks, Border* border)
     : Block(std::move(equations), SparseBackend::eigen, border), ranks_(ranks), of_rank_(ranks)
 {
@@ -80,6 +82,8 @@ void RankBlock::place_own()
     if (ranks_.is_last() && !ranks_.is_first()) std::ranges::reverse(places_.own);
 }
 
+/// X, P and, of equal multipliers, lambda; rows as many. Lower multipliers live inside of elements: ranks
+/// share none.
 RankBlock::Side RankBlock::side(bool at_end) const
 {
     const FieldSpace& space = equations_.space();
@@ -116,6 +120,7 @@ void RankBlock::for_transfers(const Act& act) const
         for (const int row : side.rows) act(row, i++, side.sign);
 }
 
+/// From the first rank to the last, one after the other: both sides of a border begin with the same numbers.
 void RankBlock::share_guess()
 {
     const FieldSpace& space = equations_.space();
@@ -152,6 +157,7 @@ void RankBlock::adopt(const Block& other)
     transfers_[0] = transfers_[1] = of.transfers_[of.kept_];
 }
 
+/// Finite in all ranks or in none, so that all go on or stop together.
 bool RankBlock::residual()
 {
     const bool is_finite = Block::residual();

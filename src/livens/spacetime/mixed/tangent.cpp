@@ -150,6 +150,7 @@ void Tangent::add_momenta(int e, const ElementSums& sums, EntrySink& entries) co
 }
 
 /// Rows dX by X and P: momentum, geometric terms, loads.
+/// Of P: - int M_a' M_b with the natural start, by parts (P10), and int M_a M_b' with the strong one (P11).
 void Tangent::add_forces(int e, const ElementSums& sums, EntrySink& entries) const
 {
     const Coordinates& m = space_.coordinates;

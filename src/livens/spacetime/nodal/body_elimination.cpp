@@ -90,6 +90,7 @@ bool Bodies::factorise()
     return factor_ != 0 && schur_.factorise();
 }
 
+/// Y_1^T y = range in place of 0 where violations are to be taken off with the same step.
 void Bodies::solve(std::span<const double> rows, const double* range, double* y)
 {
     const int k = tables_.rank, n = tables_.n_twists;

@@ -23,6 +23,8 @@ Vector3 arm_between(const double* from, const double* to)
 
 }   // namespace
 
+/// A scaled row is the force times the inverse root of mass and K^T times the moment about the centre. The
+/// moment about the reference point is what stays, so that the one about the centre changes with the arm.
 void carry_rows(const Scaling& from, const Scaling& to, double* y)
 {
     for (int b = 0; b < from.bodies.n_bodies(); ++b) {
@@ -41,6 +43,8 @@ void carry_rows(const Scaling& from, const Scaling& to, double* y)
     }
 }
 
+/// A scaled twist is the velocity of the centre times the root of mass and K^-1 times the spin: here the
+/// velocity of the reference point stays.
 void carry_twists(const Scaling& from, const Scaling& to, double* y)
 {
     for (int b = 0; b < from.bodies.n_bodies(); ++b) {

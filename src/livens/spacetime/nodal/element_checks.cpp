@@ -43,6 +43,8 @@ bool ElementChecks::has_small_turns(const Nodes& nodes, int e) const
     return true;
 }
 
+/// h |V - X_h'| at the end; with radau at the start, as its polynomial meets the velocity at the end but for
+/// the projection ("Spurious elements"). Lengths of the model, of centres of mass, or radians.
 double ElementChecks::velocity_jump(const NodalSystem& system, int e, const ElementEnd& end,
                                     bool refuse_turns) const
 {

@@ -61,6 +61,7 @@ bool ElementEnd::set(InstantState& state, const State& given)
     return true;
 }
 
+/// On both sides, which differ only where a load jumps in time.
 void ElementEnd::accelerate(InstantState& state)
 {
     instant_.accelerate(state, Side::right);
@@ -219,6 +220,7 @@ bool ElementEnd::reach(NodalSystem& system, MarchKernel& kernel, int e, const do
     return true;
 }
 
+/// A row that was left out and is off by more than 1e-8 of its scale (docs/theory.md, "Least reactions").
 std::string ElementEnd::contradiction() const
 {
     const InstantState& state = states_[1 - now_];

@@ -208,6 +208,8 @@ void NullSpaces::to_current(const double* x, int A, double* y) const
     carry_twists({tables_.bodies, maps_at(A)}, {*bodies_, nodes_->maps(A)}, y);
 }
 
+/// Rows and increments of a march are in the null spaces where nodes stand; those of a window, whose steps
+/// may be long, are carried to where the factors were made, and back.
 void NullSpaces::solve(std::span<const double> rows, const double*, double* y)
 {
     const int n = tables_.n_twists, k = tables_.rank;

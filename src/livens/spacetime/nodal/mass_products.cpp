@@ -53,6 +53,8 @@ void MassProducts::place(int part, int a, const double* X, const double* maps, c
     }
 }
 
+/// Columns of Z at this node as rates: three of the centre's velocity, whose scaled mass is 1, and of a rigid
+/// body nine of w x d_a; weighed ones are those times E, by its diagonal in principal axes.
 void MassProducts::place_body(int b, std::ptrdiff_t place, const double* X, const double* maps,
                               const double* z)
 {

@@ -116,6 +116,7 @@ void NodePositions::place_solved(const double* increments, int width)
             const double *X_0 = set.X.data() + 12 * b, *low_0 = set.low.data() + 12 * b;
             double* by = dX + 12 * b;
             take_increments(d, width, tables_.bodies[b].center, by);
+            // digits below the last are handed on at the end alone
             if (B == p)
                 add_two_sums(X_0, low_0, by, X + 12 * b, set.low.data() + place(B) + 12 * b, 12);
             else
@@ -276,6 +277,7 @@ void Nodes::build_bases(int slot, int first, int behind, bool same_choices)
     }
 }
 
+/// By the bases at hand, which do not turn with it. The largest move, in lengths or radians.
 double Nodes::correct(const WindowLayout& layout)
 {
     const int k = tables_.rank, n = tables_.n_twists;

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Masses of an element are products of all its nodes with each other (MassProducts). The rest comes body by
+// body: it is gathered as J_AB Z_B, n x f, and multiplied by Z_A^T once the pair is closed (docs/theory.md,
+// "The tangent").
 #include "livens/spacetime/nodal/pair_blocks.h"
 
 #include <algorithm>
@@ -34,6 +37,7 @@ bool PairBlocks::take_masses(int e, const std::vector<double>& k, double h)
         for (int a = 0; a <= p; ++a) {
             if (f >= 64) Patience::ask();
             masses_.multiply(a);
+            // with radau k is not symmetric
             for (int b = 0; b <= p; ++b) {
                 by_row[b] = k[a * (p + 1) + b] / h;
                 by_column[b] = k[b * (p + 1) + a] / h;

@@ -11,6 +11,7 @@
 
 namespace livens::inline spacetime_internal {
 
+/// Copies: factors serve several steps, in which nodes move on.
 PhasesWindow::Frame PhasesWindow::frame_of(const Phase& phase, int node)
 {
     const Nodes& nodes = phase.system().nodes();
@@ -89,6 +90,8 @@ DenseMatrix PhasesWindow::handed_on(std::size_t k) const
 }
 
 /// Increments of a phase by its start and by numbers.
+/// The last 2 f rows of a phase are its closing ones: of a right-hand side that is 1 in one of them the start
+/// moves by one free motion, or by the momentum along it, and all else follows.
 void PhasesWindow::respond(std::size_t k, const DenseMatrix& by_numbers, std::size_t first_row)
 {
     Phase& phase = *phases_[k];
@@ -173,6 +176,8 @@ bool PhasesWindow::condense(const DenseMatrix& by_numbers)
     return condensed_.factorise();
 }
 
+/// First along the phases, with numbers and a first start that stay; conditions then tell both, and each
+/// phase adds what its own start, which has moved likewise, and numbers make of it.
 void PhasesWindow::solve_rows(const PhasesWindow& other, const std::vector<std::vector<double>>& balances,
                               const std::vector<double>& conditions, std::span<double> dx)
 {

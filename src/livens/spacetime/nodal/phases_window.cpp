@@ -21,6 +21,8 @@ TimeMesh stretch_of(const TimeMesh& whole, int first, int last)
     return part;
 }
 
+/// Balances hold at all nodes of a phase, with unknown momenta at both ends (docs/theory.md, "Phases between
+/// conditions"); the state of the plan is a guess, with angles of loads.
 Ends ends_of(const PhasePlan::Phase& plan, const TimeMesh& mesh)
 {
     Ends ends;
@@ -35,6 +37,7 @@ Ends ends_of(const PhasePlan::Phase& plan, const TimeMesh& mesh)
 
 }   // namespace
 
+/// Which joints act is asked in the middle, since they begin and end at the ends of phases.
 WindowPhase::WindowPhase(const Model& model, const TimeMesh& whole, const PhasePlan::Phase& plan,
                          const ElementRule& rule)
     : acting(acting_at(model, 0.5 * (whole.ends[plan.first] + whole.ends[plan.last]))),
@@ -149,6 +152,9 @@ int PhasesWindow::n_unknowns() const
     return static_cast<int>(n);
 }
 
+/// In the order of time: a phase begins where the one before it stands now, with digits below the last and
+/// momenta, before its rows are formed. Conditions come last, with angles that are followed through all
+/// phases.
 bool PhasesWindow::residual()
 {
     const std::vector<double> zeros(start_X_.size(), 0.0);
@@ -176,6 +182,7 @@ bool PhasesWindow::residual()
                             });
 }
 
+/// Unknowns of phases stand one behind the other. The numbers behind them are of the model, which is another.
 bool PhasesWindow::move(std::span<const double> dx, double damping)
 {
     is_formed_ = false;
@@ -220,6 +227,7 @@ double PhasesWindow::scale() const
     return scale;
 }
 
+/// Conditions count by what they miss of their scales, as a share of the terms of balances.
 NewtonProblem::Rows PhasesWindow::rows() const
 {
     Rows all;

@@ -61,6 +61,9 @@ Ends RanksWindow::ends_of_part(const Ends& whole, const TimeMesh& part)
     return ends;
 }
 
+/// Of the ends of time that this rank has: a row for each free motion whose place or momentum is known, or
+/// for each condition. One of both ends is a row in the first rank and one in the last, joined by an unknown;
+/// on one rank it is a single row.
 ConditionsOfRank RanksWindow::places_of(const Ends& ends, int n_free, const Ranks& ranks)
 {
     ConditionsOfRank places;
@@ -131,6 +134,8 @@ void RanksWindow::hold_known()
 }
 
 /// False: places are not finite.
+/// 24 numbers a body, X and digits below, and momenta go from the last node of a rank to the first node of
+/// the next one: assignments, as between phases.
 bool RanksWindow::meet_neighbours()
 {
     const std::size_t n = 12 * tables_.bodies.size(), n_p = static_cast<std::size_t>(tables_.n_twists);

@@ -48,6 +48,7 @@ void NodalRows::open(const WindowLayout& layout)
     reduced_.resize(n_active * tables_.freedoms());
 }
 
+/// With radau each row A has the share c_A of the momentum at the start, as columns P of 12 numbers a body.
 void NodalRows::start_with(const InstantState& first)
 {
     momenta_[0].scaled = first.momentum;
@@ -101,6 +102,8 @@ void NodalRows::take_row(const WindowLayout& layout, const Nodes& nodes, int A, 
     tables_.bodies.twist_rows(nodes.X(A), nodes.maps(A), raw, at.q.data());
 }
 
+/// Momenta of an end that may move are kept about reference points, in world axes; rows want them about the
+/// centres of mass, in the scaled twists of where the body is now.
 void EndMomentum::add_to(const ModelTables& tables, const double* maps, double sign, double* y) const
 {
     std::vector<double> about_centre = about_reference, rows(about_centre.size());
@@ -112,6 +115,7 @@ void EndMomentum::add_to(const ModelTables& tables, const double* maps, double s
 }
 
 /// lambda_A from the rows in the constraint directions; what is left are the reduced rows.
+/// They have the opposite sign, as the right-hand side of a step.
 bool NodalRows::eliminate(const WindowLayout& layout, const Nodes& nodes, int A, double* reduced,
                           RowWorkspace& at)
 {

@@ -18,6 +18,8 @@ std::vector<int> quadratic_ones(const ModelTables& tables, const std::vector<int
 
 }   // namespace
 
+/// `begin_` tells of each row where twists of its first body end, and where those of its second do. A row
+/// that is no single form has none.
 RowsInLanes::RowsInLanes(const ModelTables& tables, const std::vector<int>& rows, int n_nodes)
     : tables_(tables), rows_(rows), sums_(tables, quadratic_ones(tables, rows)),
       functions_(lanes::functions(std::min(n_nodes, 8)))

@@ -101,6 +101,7 @@ void Tangent::form_element(const Point& of, int e, Workspace& at)
         for (int b = 0; b < rule_.size(); ++b) {
             const int B = e * rule_.degree + b;
             if (!layout.is_unknown(B)) continue;
+            // once for a shared node: in the element that ends there
             const bool is_own = A == B && (a > 0 || e == 0);
             if (are_masses_taken && !is_own && !has_loads) continue;
             sink.open(e, A, B);

@@ -42,6 +42,7 @@ UnknownsWindow::UnknownsWindow(const NumberedProblem& problem, const std::vector
     begin_.resize(static_cast<std::size_t>(problem.size()), 0.0);   // nothing is unfolded yet
 }
 
+/// Null means in move() that a step was too long, in open() the end. The reason is kept for the message.
 UnknownsWindow::Shared UnknownsWindow::make(const std::vector<double>& values)
 {
     Patience::ask();
@@ -70,6 +71,7 @@ bool UnknownsWindow::open(int first, int last, SolveReport& report)
     return false;
 }
 
+/// Meshes are stretched with numbers of time; the guess is asked on the problem's own mesh.
 bool UnknownsWindow::start_from(const Guess& guess)
 {
     SolveReport report;
@@ -96,6 +98,8 @@ DenseMatrix UnknownsWindow::columns(Formed formed)
     return all;
 }
 
+/// Nodes keep their X and are pulled onto the joints of the other model. Its rows are carried to the axes and
+/// null spaces of the factors before differences are taken.
 bool UnknownsWindow::add_sample(int i, const NumberedProblem::Sample& sample, Formed formed,
                                 std::span<double> column)
 {
@@ -111,6 +115,7 @@ bool UnknownsWindow::add_sample(int i, const NumberedProblem::Sample& sample, Fo
 
 void UnknownsWindow::solve(std::span<double> dx) { formed_->window->solve_for(*now_->window, dx); }
 
+/// From the kept point, in a window of the new model. A number that would pass its bound stays at it.
 bool UnknownsWindow::move(std::span<const double> dx, double damping)
 {
     now_ = kept_;
@@ -134,6 +139,7 @@ void UnknownsWindow::keep()
     kept_ = now_;
 }
 
+/// Numbers count by their scales. A nan stays: it is neither passed by nor replaced.
 double UnknownsWindow::size_of(std::span<const double> dx) const
 {
     double size = now_->window->equations().size_of(dx);
@@ -158,6 +164,7 @@ AcceptedElements UnknownsWindow::close(const AcceptanceCriteria& criteria, Solve
     return closed;
 }
 
+/// Without factors nothing is known to be determined.
 Uncertainty UnknownsWindow::uncertainty()
 {
     if (!is_formed_) return {1, "the motion with its unknown numbers", 1};

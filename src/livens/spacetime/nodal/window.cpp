@@ -92,6 +92,8 @@ bool NodalWindow::open(int first, int last, SolveReport& report)
 }
 
 /// Six numbers a body, about its reference point.
+/// Of an end that is led they go linearly from those of the arrival to the stated ones (docs/theory.md,
+/// "Finding the motion").
 void NodalWindow::set_momenta(const State& given, std::vector<double>& momenta) const
 {
     const double share = given.t == ends_.led.from.t ? ends_.led.share : 1;
@@ -135,6 +137,7 @@ bool NodalWindow::fail(SolveReport& report, const std::string& message) const
     return false;
 }
 
+/// What Newton's iteration would leave for closing is put in its place: impulses, pivots, nodes and turns.
 bool NodalWindow::solve(const NewtonOptions& options, bool soon, NewtonReport& report)
 {
     if (!kernel_.serves() || !layout_.is_march() || layout_.n_elements() > 1 ||

@@ -3,6 +3,9 @@
 
 namespace livens {
 
+/// Of each node, or, with `every` = degree, of ends of elements alone. Where momenta are unknown the border
+/// has those of both ends along free motions, and numbers; a part of a chain has its own count of closing
+/// rows, and unknowns that join them to those of other ranks (docs/theory.md, "Lobatto windows on ranks").
 BlockStructure spacetime_internal::structure_of(const WindowLayout& layout, int freedoms, int every)
 {
     const int n = (layout.n_nodes() - 1) / every + 1, per_element = layout.degree / every;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// docs/theory.md, "Impacts".
 #include "livens/spacetime/phases/contacts.h"
 
 #include <algorithm>
@@ -274,6 +275,7 @@ double slope_of_row(const Event& event, const State& state)
     return is_sine ? std::cos(coordinate_value(all[0].coordinate, state.X)) : 1;
 }
 
+/// 64 times what was touched, up to ten thousand times rounding; and four times what a body is beyond it by.
 double slack_behind(const Model& model, const Event& event, const State& reached, double touched_with)
 {
     constexpr double more = 64, most = 1e4, clear = 4;

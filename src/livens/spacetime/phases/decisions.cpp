@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// docs/theory.md, "Events": spans of time in which joints and loads act, added to as events come.
 #include "livens/spacetime/phases/decisions.h"
 
 #include <cmath>
@@ -65,6 +66,7 @@ const Joint* begun_by_impact(const Model& model, const EventAction& action)
 
 }   // namespace livens::inline spacetime_internal
 
+/// In the order in which they came. A stop that was hit and has not closed acts at no time.
 livens::Model livens::decided_model(const Model& model, double start, std::span<const SolvedEvent> events)
 {
     if (model.events().empty()) return model;

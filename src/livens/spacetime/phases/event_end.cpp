@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// docs/theory.md, "Events": Where.
 #include "livens/spacetime/phases/event_end.h"
 
 #include <algorithm>
@@ -43,6 +44,9 @@ bool solve_last(const WatchedPhase& phase, double end, Solution& solved)
 
 }   // namespace
 
+/// Newton's steps by the margin of the state at the end and its rate behind it, each with the last element
+/// solved anew up to there; a step that leaves the bracket is a bisection. What has fired may lie a little
+/// ahead, as the polynomial has it before the state does.
 bool end_at_event(const WatchedPhase& phase, std::vector<int>& fired, Solution& solved)
 {
     Motion& motion = solved.motion;

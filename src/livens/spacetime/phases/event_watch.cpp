@@ -163,6 +163,7 @@ std::function<void(const LoadArguments&, std::span<double>)> EventWatch::reactio
     };
 }
 
+/// Without the slack that the guard of an open stop has taken off, for which elements end.
 std::vector<double> EventWatch::terms_at(int event, const State& state) const
 {
     const Load& watch = acting_.model.loads()[first_watch_ + event];
@@ -176,6 +177,7 @@ std::vector<double> EventWatch::terms_at(int event, const State& state) const
     return terms;
 }
 
+/// Conditions are sums (or) of products (and): the largest of the least.
 double EventWatch::margin(int event, const State& state) const
 {
     const std::vector<double> terms = terms_at(event, state);
@@ -284,6 +286,7 @@ std::vector<int> EventWatch::fired(const Motion& so_far)
     return found;
 }
 
+/// By its own rate the state has it within a twentieth of an element more.
 bool EventWatch::comes_at_once(const Motion& motion, int event) const
 {
     const Border border = border_of(motion, std::span(&event, 1));
@@ -317,6 +320,8 @@ bool EventWatch::was_beyond(const Motion& motion, std::span<const int> events) c
     return std::ranges::any_of(events, [&](int e) { return slack(e) > 0 && margin(e, before) > 0; });
 }
 
+/// Numbers of the state go up or down by 1e-9 of their size, far above rounding, and what that changes is
+/// scaled to one spacing; by the rate of the condition it is a time. Of n elements sqrt(n) times as much.
 double EventWatch::rounding_at_end(const Motion& motion, int event) const
 {
     // Elements are iterated, and their ends looked for, to so much of their motion.

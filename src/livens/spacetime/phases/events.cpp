@@ -190,6 +190,7 @@ void jump_at_end(Motion& motion, const Model& model, const std::vector<Matrix34>
     }
 }
 
+/// Arrays of n parts by elements lose one of these, those by element ends one of n + 1.
 void drop_last(Motion& motion)
 {
     const auto n = static_cast<std::size_t>(motion.n_elements());

@@ -113,6 +113,8 @@ bool is_armed(const Model& model, const EventAction& action, double t)
 
 }   // namespace
 
+/// Angles are counted along, so elements are taken in order. A top of the looks counts where it is nearer to
+/// zero than the condition moves in the element; between looks it is found by golden section.
 double undecided_place(const Model& model, const Motion& motion, const Motion& other)
 {
     const std::vector<double> ends = model.event_times();

@@ -274,6 +274,8 @@ private:
         return true;
     }
 
+    /// The row of a stop is a function of its coordinate with the slope `unit`: speeds by the coordinate are
+    /// those of the row over it, impulses along it those of the row times it.
     void tell_contact(Way& at, int event, const ContactOutcome& outcome, const State& reached,
                       Solution& whole) const
     {

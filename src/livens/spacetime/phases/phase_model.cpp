@@ -13,6 +13,7 @@ const Model& PhaseModel::decided(const Decisions& decisions)
     return *decided_;
 }
 
+/// What watches is kept while the same joints act and nothing was decided: bounces change neither.
 void PhaseModel::begin(const Decisions& decisions, double first, double last, const State& start,
                        const std::vector<double>& slack)
 {

@@ -109,6 +109,7 @@ void io_internal::check_mass(const Section& body)
                         "or 'mass' and 'inertia'"});
 }
 
+/// (M, S^T; S, E) of (P7), symmetric to the bit: check_moments() lets rounding pass.
 Matrix4 io_internal::read_moments(const Section& body)
 {
     Matrix4 m{};
@@ -154,6 +155,8 @@ std::vector<ShapePart> io_internal::parts_in_body(const Section& body, const Sol
     return parts;
 }
 
+/// Beside `inertia` a mesh or union stays where it lies in the body, and its own centre, about which it is
+/// drawn, is another one than the body's.
 Outline io_internal::outline_in_body(const Section& body, const Solid& shape)
 {
     if (!body.has("inertia") || !shape.has_own_origin) return shape.outline;

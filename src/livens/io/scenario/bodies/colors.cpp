@@ -17,6 +17,7 @@ struct NamedColor {
     unsigned int rgb;
 };
 
+// In the order of the alphabet, as parse_color() searches by bisection.
 // clang-format off
 constexpr NamedColor named_colors[] = {
     {"aliceblue", 0xf0f8ff}, {"antiquewhite", 0xfaebd7}, {"aqua", 0x00ffff}, {"aquamarine", 0x7fffd4},

@@ -59,6 +59,7 @@ LinearDensity linear(const Expression& density, const Mesh& mesh, double unit)
         // well.
         if (!(gap <= 1e-12 * size)) refuse_field("is not linear");
         if (k > 0) continue;
+        // Per unit of the mesh, in whose numbers its surface is integrated.
         for (int i = 0; i < 3; ++i) found.gradient[i] = unit * slopes[i];
         found.at_origin = value - dot({slopes[0], slopes[1], slopes[2]}, p);
     }

@@ -248,6 +248,7 @@ ReducedMesh& MeshStore::entry(const std::string& own_path, bool is_turned)
 
 const ReducedMesh& MeshStore::find(const std::string& path, bool is_turned) { return entry(path, is_turned); }
 
+/// Kept by the unit and the text of the density, as a run has no points to integrate over.
 const Moments& MeshStore::weighted(const std::string& path, bool is_turned, double unit,
                                    const std::string& density)
 {
@@ -318,6 +319,8 @@ Mesh MeshStore::open(const std::string& path)
     return read_mesh_file(file, path);
 }
 
+/// A line for each thing, which begins with what it is: numbers, then a name, which may have blanks.
+/// Lines behind `mesh` or `picture` belong to that one. read_line() reads them again.
 std::string MeshStore::kept() const
 {
     std::string text;

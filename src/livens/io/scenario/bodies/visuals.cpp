@@ -101,6 +101,8 @@ bool check_look(const Section& section)
     return is_right;
 }
 
+/// A visual has the colour and opacity of its body unless it says its own. One whose mesh cannot be read is
+/// told at its key, and the body is read on.
 void read_look(const Section& section, MeshStore& meshes, Outline& outline)
 {
     if (section.takes("color")) read_color(section, outline);

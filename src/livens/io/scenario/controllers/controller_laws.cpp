@@ -19,6 +19,10 @@ constexpr int instants_of_size = 64;
 
 }   // namespace
 
+/// The largest of |z| and of |f| times the shorter of the duration and 1 / |df/dz| (theory.md, "States"): at
+/// instants of all of the time, as f may depend on it, with what is read taken as it is at the start. Where
+/// that is zero, as of what begins at its set point, changes of inputs by a tenth of the length, 0.1 rad or a
+/// tenth of the weight tell what f may become.
 void ControllerReader::measure(SizesOfStates& sizes) const
 {
     const Section* time = only_section(builder_.run(), "time");
@@ -136,6 +140,7 @@ void ControllerReader::make_rates(const std::vector<Expression>& of_rates,
         if (!ends_at_bends(builder_)) warn_of_kinks(builder_, section_, "states", some);
         builder_.model().add_load(rates_of_body(first, some, breaks));
     }
+    // The observer that is added next.
     own().load = static_cast<int>(builder_.model().loads().size());
     const std::vector<ReactionLaw::Reading> told = readings(of_outputs);
     add_observer("controller " + name_, told);
@@ -147,6 +152,7 @@ void ControllerReader::make_sampling()
     const double first = section_.has("first") ? section_.number("first")
                          : time == nullptr     ? 0
                                                : time->number("start");
+    // It asks the load that tells the next values, which is the first one added below.
     Sampling sampling{name_,
                       {static_cast<int>(builder_.model().loads().size()), {}},
                       section_.number("every"),

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// One [[controller]] in steps: names; bodies whose velocities are its states; formulas, when the states of
+// all controllers are there to be read; and what these do to the bodies (docs/theory.md, "States"). With
+// `every` outputs are states as well, which hold their values between the samples.
 #include "livens/io/scenario/controllers/controller_reader.h"
 
 #include <algorithm>
@@ -51,6 +54,7 @@ ControllerReader::ControllerReader(Builder& builder, const Section& section, con
     }
 }
 
+/// Three states are the velocity of one point mass, whose place nothing reads; the last body may hold fewer.
 void ControllerReader::hold(const StateScale& scale)
 {
     scale_ = scale;
@@ -69,6 +73,8 @@ void ControllerReader::hold(const StateScale& scale)
     index_ = builder_.controllers().size() - 1;
 }
 
+/// Outputs in the order of the file: each becomes a word for those behind it and for the states, so that
+/// there are no loops among them.
 void ControllerReader::make()
 {
     Inputs inputs;

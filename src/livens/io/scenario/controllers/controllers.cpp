@@ -45,6 +45,7 @@ bool read_all(Builder& builder, const SizesOfStates& sizes, SizesOfStates* found
         });
     }
     if (builder.findings().n_errors() > before) return false;
+    // Behind the states of all: formulas may read those of any controller.
     for (ControllerReader& one : all) builder.guard(one.path(), [&] { one.make(); });
     if (builder.findings().n_errors() > before) return false;
     if (found != nullptr)
@@ -97,6 +98,7 @@ void read_controllers(Builder& builder)
                           {"", "state 'every', or leave out 'first'"});
     }
     if (builder.findings().n_errors() > before || builder.top().sections("controller").empty()) return;
+    // The first reading adds bodies and loads, which the second one would find a second time.
     const Model as_it_was = builder.model();
     const std::vector<ReadController> of_parts = builder.controllers();
     SizesOfStates sizes;

@@ -66,6 +66,8 @@ std::string formula_of(const std::string& comparison, const std::string& text, c
     return "(" + left + ") - (" + right + ")";
 }
 
+/// `and` binds closer than `or`: `when` holds alternatives, each true where all of its comparisons are, which
+/// are numbered through.
 EventTerms terms_of(const Builder& builder, const Section& section, const std::string& text,
                     const std::string& path)
 {
@@ -128,6 +130,7 @@ std::string state_of(const Builder& builder, const std::string& name, const std:
 }
 
 /// What an event sets. Throws InputError.
+/// By the load that read_changes() has made, whose readings have the names of the states they are for.
 StateChange change_of(const Builder& builder, const std::string& event)
 {
     StateChange change;
@@ -161,6 +164,8 @@ void add_event(Builder& builder, const Section& section, const std::string& name
 }
 
 /// `from` and `until` of what acts for a part of the time.
+/// Each end that is a condition is an event of its own. Both by the same one would begin it and end it at
+/// one instant.
 void read_times_of(Builder& builder, const Section& section, const std::string& name, EventAction action)
 {
     const std::string path = (action.joint >= 0 ? "joint[" : "load[") + name + "]";

@@ -41,6 +41,7 @@ const std::vector<Kind>& drive_kinds()
     return all;
 }
 
+/// Whether its kind moves a point of one body.
 bool is_path(const Section& drive)
 {
     return drive_kinds()[static_cast<std::size_t>(drive.kind())].keys[0].name == "body";
@@ -195,6 +196,7 @@ TimeFunction read_law(const Section& drive, std::size_t c, std::size_t n, double
     return straight_on(spline_table(times, std::move(own)), times.front(), times.back());
 }
 
+/// A path is a displacement from where the point stands: laws that count from a value begin at 0.
 std::array<TimeFunction, 3> read_path(const Section& drive, const Duration& during)
 {
     return {read_law(drive, 0, 3, 0, during), read_law(drive, 1, 3, 0, during),
@@ -278,6 +280,7 @@ void read_drive(Builder& builder, const Section& drive, std::unordered_set<std::
         claim_name(drive, "joint or drive", name, taken,
                    {"results refer to drives as to joints", "give it another 'name'"});
     builder.remember(path, drive);
+    // In the model it is a joint, and complaints of the core call it so.
     builder.remember("joint[" + name + "]", drive);
     if (drive.kind() == any_kind) return;
     check_drive_law(drive);

@@ -76,6 +76,8 @@ void add_reading(Inputs& inputs, const Sensor& sensor, const std::string& symbol
 namespace {
 
 /// A formula of other symbols becomes one of these, which are told apart by `owner`.
+/// Symbols that it does not read have no place (-1). One with a parenthesis was taken in before from another
+/// controller, whose name it has.
 Expression taken_in(const Expression& formula, const Inputs& of, const std::string& owner, Inputs& inputs)
 {
     std::vector<int> places;
@@ -127,6 +129,8 @@ void add_number(Inputs& inputs, const ReadController& controller, const std::str
 
 }   // namespace
 
+/// `force` and `torque` alone are the lengths of these vectors, for which `along` stays zero; _x, _y, _z are
+/// components in the world.
 std::optional<ReactionInput> reaction_of(const Model& model, const std::string& name)
 {
     const std::size_t point = name.rfind('.');

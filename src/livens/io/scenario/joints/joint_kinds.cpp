@@ -93,6 +93,7 @@ Joint make_screw(const JointParts& p)
     return screw(p.name, p.first, p.second, p.frame, p.X_first, p.X_second, p.section.number("pitch"),
                  p.scale);
 }
+/// Matrices are stored column by column: these are the columns first, second, third.
 Matrix3 triad_of(const Vector3& third, const Vector3& first)
 {
     const Vector3 second = cross(third, first);
@@ -118,6 +119,7 @@ Joint make_spherical(const JointParts& p)
         triads = {triad_of(p.frame.axis_first, p.frame.across_first),
                   triad_of(p.frame.axis_second, p.frame.across_second)};
     else
+        // Axes of the first body, in coordinates of the second: nothing is turned where they stand.
         triads.second = transpose(directors(p.X_second)) * directors(p.X_first);
     return spherical(p.name, p.first, p.second, p.frame, {triads, about}, p.X_first, p.X_second, p.scale);
 }

@@ -103,6 +103,7 @@ bool check_axes(const Section& joint, Findings& findings)
             return findings.error(given->node->items()[i].place, "axis-zero",
                                   "an axis of " + joint.label() + " is zero");
     const std::string_view word = joint_kinds()[static_cast<std::size_t>(joint.kind())].word;
+    // Both are in the world with 'at' alone. In coordinates of two bodies a . b says nothing.
     if ((word == "universal" || word == "perpendicular_axes") && joint.has("at") &&
         std::abs(dot(a, b)) > perpendicular_slack * norm(a) * norm(b))
         return joint.error("axes", "axes-not-perpendicular",
@@ -129,6 +130,7 @@ bool check_point_masses(const Builder& builder, const Section& joint, int first,
 }
 
 /// What is stated in coordinates of a body is in its axes then.
+/// Of `frames` the third axis is the joint's, and the first counts where turns about that are held.
 JointFrame read_frame(const Builder& builder, const Section& joint, int first, int second)
 {
     const Matrix34 &X_first = builder.start_configuration(first),

@@ -37,6 +37,7 @@ ReactionLaw reaction_law_of(const std::vector<Expression>& expressions, const In
         const std::vector<double> numbers = numbers_of(inputs, at, reactions);
         const double size = acts(at.at).value;
         for (std::size_t k = 0; k < expressions.size(); ++k)
+            // Not even asked while it does not act: there it may have no value.
             factors[k] = size == 0 ? 0 : expressions[k](beside_breaks(at.at, breaks), numbers);
     };
     for (const Expression& one : expressions)
@@ -56,6 +57,7 @@ ReactionLaw reaction_law_of(const std::vector<Expression>& expressions, const In
     return law;
 }
 
+/// What reads reactions waits, without units, until the model is whole: see bind_loads().
 Load telling(const Builder& builder, const std::string& name, const Inputs& inputs,
              const std::vector<ReactionLaw::Reading>& told)
 {
@@ -153,6 +155,7 @@ void warn_of_kinks(Builder& builder, const Section& section, std::string_view ke
                  "take the family lobatto, or a smooth law such as tanh"});
 }
 
+/// Guards of all formulas one after the other, and their numbers likewise.
 LawGuards guards_of(const std::vector<Expression>& expressions, const Inputs& inputs)
 {
     std::vector<Guard> guards;

@@ -72,12 +72,14 @@ void check_units_of_terms(Builder& builder, const Section& section, const std::v
     const Value* given = section.find("terms");
     const Amount* first = nullptr;
     std::vector<Amount> amounts;
+    // `first` points into it.
     amounts.reserve(terms.size());
     for (std::size_t i = 0; given != nullptr && i < terms.size(); ++i) {
         const Node& node = given->node->entries()[i].value;
         if (node.kind != Node::Kind::text) continue;
         Amount amount = compute(node.text(), section.parameters()).amount;
         if (!amount.has_unit) continue;
+        // A term is factor times coordinate.
         if (terms[i].coordinate == "displacement") amount.powers[0] += 1;
         amount.powers[3] = 0;   // a radius is in m or in m/rad
         amounts.push_back(amount);

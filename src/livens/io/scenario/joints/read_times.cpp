@@ -7,6 +7,8 @@
 
 namespace livens::inline io_internal {
 
+/// Its instants divide time into phases with models of their own (theory.md, "Drives", Events). Those that
+/// are conditions become events in read_events().
 void read_times(Builder& builder, const Section& section, Joint& joint)
 {
     const Section* time = only_section(builder.run(), "time");

@@ -60,6 +60,7 @@ void add_one(Builder& builder, const std::string& name, const JointReference& of
 {
     const Joint joint = *of.joint;   // a copy, as joints are added
     const NamedCoordinate coordinate = *of.coordinate;
+    // A closed stop is the row of a drive that stands still, and has no other angles than that.
     if (coordinate.coordinate.is_angle())
         check_driven_angle({&joint, &coordinate},
                            {[&](Instant) {
@@ -75,6 +76,7 @@ void add_of_joint(Builder& builder, const Section& section, const std::string& n
 {
     check_units(section, find_coordinate(builder, section, path).coordinate->coordinate.is_angle(), path);
     const Limits limits = read_stop_limits(section, path);
+    // The coordinate is looked up for each: references end where a joint is added.
     add_each(limits, law_of(section), [&](const StopLaw& law) {
         add_one(builder, name_of_side(name, limits, law), find_coordinate(builder, section, path), law, path);
     });
@@ -164,6 +166,7 @@ void read_limits_of_joints(Builder& builder, std::unordered_set<std::string>& ta
 
 }   // namespace
 
+/// What `limit_law` says. Without it numbers that springs alone have make them springs.
 bool are_rigid_limits(const Section& keys)
 {
     if (!keys.takes("limits") || !keys.has("limits")) return false;
@@ -212,6 +215,7 @@ void read_stops(Builder& builder)
     for (const Section& section : builder.top().sections("stop")) {
         const std::string name = section.text("name"), path = "stop[" + name + "]";
         builder.remember(path, section);
+        // How many limits there are is not known yet, and thus not which of these names the model will have.
         for (const char* part : {"", ".low", ".high"}) remember_stop(builder, name + part, section);
         if (!section.is_valid()) continue;
         claim_name(section, "joint, drive or stop", name, taken,

@@ -41,6 +41,8 @@ JointLimits read_limits(const Builder& builder, const Section& keys, const Joint
     const double time = gravity > 0 ? std::sqrt(length / gravity) : time_without_gravity;
     if (!keys.has("limit_damping")) limits.damping = coordinate.coordinate.is_angle() ? time : time / length;
     if (keys.has("limit_stiffness")) return limits;
+    // A contact of the inertia J with nothing else on it takes pi sqrt(J / k) (theory.md, "Coordinates of
+    // joints", Limits).
     const double frequency = std::numbers::pi / (share_of_contact * time);   // of half a period's contact
     limits.stiffness = inertia * frequency * frequency;
     if (!(limits.stiffness > 0 && std::isfinite(limits.stiffness)))

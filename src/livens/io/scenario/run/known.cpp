@@ -12,6 +12,8 @@ namespace livens::inline io_internal {
 namespace {
 
 /// Texts with a unit must have that of the quantity.
+/// kg m^2/s^2 of energies, else m or rad, over s of rates. Whether an angle has its rad is not asked; hertz
+/// are no rad/s.
 void check_unit(const Node& node, const Section& table, const StateQuantity& quantity)
 {
     if (node.kind != Node::Kind::text) return;
@@ -77,6 +79,7 @@ void read_known(Builder& builder, const Section& table, Condition::At at, Condit
     const Value* known = table.find("known");
     if (known == nullptr) return;
     const bool is_faulty = builder.findings().n_errors() > 0;   // what is not found has been told of
+    // Of all entries one after the other: one number each, or as many as its list has.
     const double* numbers = known->numbers.data();
     for (const Entry& entry : known->node->entries()) {
         const std::string path =

@@ -90,6 +90,7 @@ bool turns(const Section& body)
 
 }   // namespace
 
+/// `rate` is a key of joints that have one coordinate alone, number 0.
 StatedStart stated_start(Builder& builder)
 {
     StatedStart stated{{}, builder.model().start()};
@@ -127,6 +128,7 @@ bool states_velocity(const Builder& builder)
            (start != nullptr && std::ranges::any_of(start->sections("coordinates"), moves));
 }
 
+/// First to where [body.start] has the bodies, then from there along the joints.
 void move_bodies(Builder& builder, const StatedStart& stated)
 {
     if (builder.findings().n_errors() > 0) return;

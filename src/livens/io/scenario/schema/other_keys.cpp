@@ -69,6 +69,8 @@ constexpr std::string_view newton = "the error of the motion is bounded by `accu
 
 constexpr std::string_view top = "top of the file";
 
+// The first that fits counts: what has `meant` needs that key, and stands before what is said of the same
+// word where the key is missing.
 constexpr OtherKey other_keys[] = {
     // the file
     {top, "", "bodies rigidbody rigidbodies links link part parts", "body",

@@ -149,6 +149,7 @@ const Table& root_table()
     return table;
 }
 
+/// The same keys, none of which a part needs: the file around it may say what it leaves out.
 const Table& part_table()
 {
     static const Table table = [] {
@@ -228,6 +229,7 @@ std::string quoted_alternatives(const Words& words)
     return text;
 }
 
+/// Of a diagonal that stands alone for an n x n matrix, number i is the entry i (n + 1), row by row.
 std::string_view Key::unit_of(std::size_t i, std::size_t n) const
 {
     if (units.empty()) return unit;

@@ -37,6 +37,7 @@ Section::Section(const Node& node, const Table& table, std::string label, Findin
     const std::vector<const Key*> keys = table.keys_of(kind_);
     values_.reserve(node.entries().size());
     for (const Entry& entry : node.entries()) read(entry, keys);
+    // Keys of all kinds come first. Those of a kind cannot be missed where nobody knows which it is.
     const std::size_t n_known = kind_ == any_kind ? table.keys.size() : keys.size();
     for (std::size_t i = 0; i < n_known; ++i) {
         const Key& key = *keys[i];

@@ -42,6 +42,8 @@ void Section::tell(std::string_view key, const std::vector<double>& numbers)
         if (v.key->name == key) v.numbers = numbers;
 }
 
+/// Its node is that of the value that tells it: complaints point there, and is_implied() knows it by that.
+/// Values may move as one is added: pointers that find() has given are not to be used behind this.
 void Section::imply(std::string_view key, const std::vector<std::string>& texts, const Value& told_by)
 {
     Value implied;

@@ -5,6 +5,8 @@
 
 namespace livens::inline io_internal {
 
+/// Without a known kind the keys of all kinds are known: one that belongs to other kinds is met only where
+/// this table has one.
 void Section::report_unknown(const Entry& entry, const std::vector<const Key*>& keys)
 {
     const Node* title = node_->find("name");

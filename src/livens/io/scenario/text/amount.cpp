@@ -17,6 +17,7 @@ struct KnownQuantity {
     Dimension powers;
     std::string_view words;
 };
+// By powers of length, mass, time and angle.
 constexpr KnownQuantity known_quantities[] = {
     {{1, 0, 0, 0}, "a length"},     {{2, 0, 0, 0}, "an area"},
     {{3, 0, 0, 0}, "a volume"},     {{0, 1, 0, 0}, "a mass"},
@@ -97,6 +98,7 @@ std::string of_number(const Amount& a, Amount& result)
     return {};
 }
 
+/// By the exponent's value: what L^n measures follows from the number that n is.
 std::string raised(const Amount& base, const Amount& exponent, Amount& result)
 {
     if (!exponent.is_pure()) return "an exponent is a plain number, not " + described(exponent);

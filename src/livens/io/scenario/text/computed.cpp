@@ -109,6 +109,8 @@ public:
     Reading(std::string text, const Parameters& parameters) : text_(std::move(text)), parameters_(parameters)
     {}
 
+    /// While the text is parsed, words and units leave their amounts by column; then the steps, each behind
+    /// its arguments, take them from there. So the grammar stands in Expression alone.
     Amount read()
     {
         const ExpressionWords words{[&](std::string_view name, int column) { return constant(name, column); },
@@ -198,6 +200,7 @@ std::string_view word_in_quotes(std::string_view value)
     return close < value.size() ? value.substr(open + 1, close - open - 1) : std::string_view();
 }
 
+/// Where the table could not be read the word may be one of its names, which is no second error.
 Computed unknown_word(const Complaint& complaint, const Parameters& parameters)
 {
     if (parameters.lacks_some()) return {{}, complaint.code, "", ""};

@@ -58,6 +58,7 @@ void Findings::add(Severity severity, const SourceLocation& place, std::string_v
                    Advice advice)
 {
     assert(!explain(code).empty() && "every code has a page");
+    // Counted even where it is not kept or was told of another copy: readers compare counts.
     if (severity == Severity::error) ++n_errors_;
     if (place.origin > 0) {
         if (!told_of_copies_.emplace(place.file, place.line, place.column, code).second) return;

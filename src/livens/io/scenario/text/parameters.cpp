@@ -40,6 +40,7 @@ bool check_parameter_name(const Entry& entry, Findings& findings)
 
 }   // namespace
 
+/// Overrides before anything is computed: others follow from what they set.
 Parameters::Parameters(const Node* table, std::span<const Override> overrides, Findings& findings)
 {
     lacks_some_ = table != nullptr && table->kind != Node::Kind::table;
@@ -119,6 +120,7 @@ void Parameters::set(const Override& given, Findings& findings)
 namespace {
 
 /// "400 mm" is 0.4 m, and 500 is nearer to 400 than to 0.4.
+/// Nearer by ratio, hence the logarithms: units differ by factors.
 bool is_like_written(const std::string& file_text, double in_file, double value)
 {
     double written = 0;
@@ -201,6 +203,7 @@ void Parameters::compute_one(std::size_t first, Findings& findings)
     }
 }
 
+/// All in the ring become wrong, by which compute_one() comes to its end.
 void Parameters::tell_ring(const std::vector<std::size_t>& waiting, std::size_t wanted, Findings& findings)
 {
     std::string ring;

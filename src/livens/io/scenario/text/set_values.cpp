@@ -25,6 +25,7 @@ std::size_t byte_at(std::string_view text, const SourceLocation& place)
 }
 
 /// Behind the number or string on one line that begins there.
+/// Of a run of quotes the last three close a string between triple ones: it may end with quotes of its own.
 std::size_t end_of_value(std::string_view text, std::size_t at)
 {
     const char quote = text[at];

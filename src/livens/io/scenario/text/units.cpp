@@ -24,6 +24,7 @@ struct Symbol {
 
 constexpr double pi = std::numbers::pi;
 constexpr double pound_force = 44482216152605;   // 1e-13 N
+// Numerator, denominator, power of ten, and the powers of length, mass, time and angle.
 constexpr std::array symbols{
     Symbol{"1", {}, false}, Symbol{"m", {1, 1, 0, {1, 0, 0, 0}}}, Symbol{"g", {1, 1, -3, {0, 1, 0, 0}}},
     Symbol{"s", {1, 1, 0, {0, 0, 1, 0}}}, Symbol{"N", {1, 1, 0, {1, 1, -2, 0}}},
@@ -74,6 +75,8 @@ struct Sign {
     std::string_view typeset, plain;
     bool is_exponent = false;
 };
+// Middle dot, dot operator and times; minus; slashes of fractions and division; blanks of typesetting; micro
+// and mu; degree and the ordinal sign that is taken for it; raised digits and their minus.
 constexpr std::array signs{
     Sign{"\xc2\xb7", "*"},           Sign{"\xe2\x8b\x85", "*"},       Sign{"\xc3\x97", "*"},
     Sign{"\xe2\x88\x92", "-"},       Sign{"\xe2\x81\x84", "/"},       Sign{"\xe2\x88\x95", "/"},
@@ -174,6 +177,7 @@ std::optional<Unit> find_symbol(std::string_view name)
     return std::nullopt;
 }
 
+/// Numerators by numerators: quotients would be rounded factor by factor.
 void multiply(Unit& unit, const Unit& factor, int exponent)
 {
     for (int i = 0; i < std::abs(exponent); ++i) {

@@ -48,6 +48,8 @@ std::string called(const Entry& entry, std::size_t i)
     return entry.key + "[" + std::to_string(i) + "]";
 }
 
+/// All unknown numbers of a tree. They are found again by their places among entries and items, which every
+/// copy of the tree has as well.
 class Collector {
 public:
     explicit Collector(Findings& findings) : findings_(findings) {}
@@ -70,6 +72,7 @@ public:
     }
 
 private:
+    /// Three items are components x, y, z; items of other lists are counted from 0.
     void walk(const Node& node, const std::string& label)
     {
         if (states_unknown(node)) return take_one(node, label);
@@ -105,6 +108,7 @@ private:
         StatedUnknown one{.name = label, .path = path_, .place = node.place};
         one.guess_place = node.find("unknown")->place;
         one.is_parameter = is_parameter_;
+        // Results and with_found_guesses() go by names, which must be different ones.
         while (std::ranges::find(found_, one.name, &StatedUnknown::name) != found_.end()) one.name += "'";
         found_.push_back(std::move(one));
     }
@@ -182,12 +186,14 @@ std::optional<NumberedTree> with_guesses(const Node& root, std::span<const Overr
             if (guess.kind == Kind::integer) guess.kind = Kind::number;
             node = std::move(guess);
         }
+    // For guesses alone: whoever reads the tree computes parameters again, and warns of them then.
     Findings told_later;
     const Parameters parameters(tree.root.find("parameters"), overrides, told_later);
     if (told_later.n_errors() > 0) {   // guesses would be made of them
         Parameters(tree.root.find("parameters"), overrides, findings);
         return {};
     }
+    // Guesses and bounds of parameters stand in the file's tree; in the other one they are numbers already.
     Node original = copied(root);
     for (StatedUnknown& one : tree.unknowns)
         if (!evaluate(at(original, one.path), parameters, one, findings)) return {};

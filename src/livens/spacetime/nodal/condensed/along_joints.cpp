@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Rows and unknowns of all nodes stand in the null spaces there. Those inside of elements go to scaled twists
+// of bodies by Z_A and are eliminated along the joints (ElementFactor); what is left between ends is a system
+// of blocks for another solver, with the border and closing rows. From the ends twists inside follow, and go
+// back to the null spaces (docs/theory.md, "The whole matrix of lobatto", Along the joints).
 #include "livens/spacetime/nodal/condensed/along_joints.h"
 
 #include <algorithm>
@@ -159,6 +163,8 @@ void AlongJoints::go_out(const Numbers& y, bool is_transposed, std::span<double>
                 x.begin() + (last - first + (has(last) ? 1 : 0)) * f);
 }
 
+/// A column has entries in rows inside as well: what elimination makes of these is added to those of the ends
+/// in the border. Columns are kept for solve(). Elements without a factor are refused by factorise().
 void AlongJoints::take_numbers(const DenseMatrix& by_numbers)
 {
     by_numbers_ = by_numbers;
@@ -194,6 +200,9 @@ void AlongJoints::pass_numbers(const Numbers& y, std::span<double> x) const
     }
 }
 
+/// With unknown numbers the inside is gone through twice: y tells the numbers, these change the rows inside,
+/// and the second go_in() leaves in the elements what go_out() asks for; its y is not needed. Transposed, y
+/// lacks what the columns of numbers see of the inside, which therefore comes first, for ends at rest.
 void AlongJoints::solve(std::span<double> x, bool is_transposed)
 {
     Numbers y = go_in(x, is_transposed);

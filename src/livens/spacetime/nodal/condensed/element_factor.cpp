@@ -46,6 +46,7 @@ void ElementFactor::resize(const JointForest& forest, const ElementSizes& sizes)
     for (const JointForest::Body& body : forest.bodies) first_.push_back(first_.back() + body.d * sizes.q);
 }
 
+/// Nodes inside have both rows and unknowns, so that one T and one z serve either side.
 bool ElementFactor::set_motion(const JointForest& forest, int b, const double* own, const double* above)
 {
     const auto& [parent, rows, d, f] = forest.bodies[b];
@@ -125,6 +126,8 @@ bool ElementFactor::factorise(const JointForest& forest, ElementBlocks& blocks)
     return std::ranges::all_of(forest.order, [&](int b) { return eliminate(forest, b, blocks); });
 }
 
+/// What neighbours have by a body's freedoms has no D^-1 in it, what the freedoms have by neighbours does.
+/// Transposed, these change their parts: then D^-T comes on the way out.
 void ElementFactor::go_inwards(const JointForest& forest, bool is_transposed, std::span<double> inside,
                                double* ends)
 {

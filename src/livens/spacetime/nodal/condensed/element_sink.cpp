@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A block of two bodies at two nodes stays what it is where both nodes are inside of the element, as joints
+// are eliminated there; on the side of an end it is taken times the null space Z, so that ends have the
+// free motions of the chain (docs/theory.md, "The whole matrix of lobatto", Along the joints).
 #include "livens/spacetime/nodal/condensed/element_sink.h"
 
 #include <algorithm>
@@ -12,6 +15,7 @@ namespace livens {
 namespace {
 
 /// to += sum_k a_k z_k of rows z_k of f numbers, those a_k so far apart.
+/// Zeros, of which blocks have many, are passed by; other rows are added two at a time.
 void add_rows(const RowFunctions& sums, double* to, const double* a, int apart, const NullSpaceRows& z)
 {
     int held = -1;   // the last that is not zero and was not added yet
@@ -116,6 +120,8 @@ void ElementSink::block(int i, int j, const double* values)
 }
 
 /// How bodies move at the nodes inside.
+/// Gradients of the rows that hold a body, (m, d; A) for it and (m, n; A) for its parent. Each node's basis
+/// may have the rows in an order of its own.
 bool ElementSink::set_motions()
 {
     const ModelTables& tables = all_.tables_;

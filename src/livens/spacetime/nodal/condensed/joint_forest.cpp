@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Breadth first from the world. All rows between a body and the one from which it was reached hold it; a row
+// that is left over closes a loop, and then there is no forest (docs/theory.md, "The whole matrix of
+// lobatto", Along the joints).
 #include "livens/spacetime/nodal/condensed/joint_forest.h"
 
 #include <algorithm>
@@ -64,6 +67,7 @@ bool JointForest::grow(const ModelTables& tables)
     return std::ranges::find(held, world) == held.end();   // else it closes a loop
 }
 
+/// A slope between other bodies than a child and its parent would fill in blocks that nobody has.
 bool JointForest::are_loads_between(const ModelTables& tables) const
 {
     for (const int l : tables.loads.with_tangent)

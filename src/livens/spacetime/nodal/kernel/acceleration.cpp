@@ -18,6 +18,9 @@ void Acceleration::begin(std::size_t n)
     taken_.resize(n);
 }
 
+/// With the proposal g, its changes dg_j and what was taken before these, dx_j: the factors c make
+/// |g - sum c_j dg_j| least, and the step is g - sum c_j (dx_j + dg_j). The oldest of `depth` pairs gives its
+/// place to the new one; a change that is zero takes no part.
 void Acceleration::apply(double* step)
 {
     const auto product = [this](const double* a, const double* b) {

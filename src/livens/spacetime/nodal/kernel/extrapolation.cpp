@@ -15,6 +15,7 @@ namespace {
 /// through every second node says more.
 constexpr int highest_degree = 10;
 
+/// The end, from which the next element goes on, each step-th node before it, and the start.
 std::vector<int> nodes_used(int degree)
 {
     const int step = degree > highest_degree ? 2 : 1;
@@ -70,6 +71,7 @@ void Extrapolation::weigh(double ratio)
     }
 }
 
+/// Elements of one length have weights that were made once: ratios are compared to rounding.
 void Extrapolation::place(double h, double* place)
 {
     weigh(h / h_);

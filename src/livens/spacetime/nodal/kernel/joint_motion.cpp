@@ -17,6 +17,7 @@ constexpr int most_nodes = 18;   // degrees that have lanes
 /// The part of v across q_0 .. q_n-1, rows of d numbers; R, if it is there, takes what is taken off.
 double orthogonalise(const double* q, int n, int d, double* v, double* R, int stride)
 {
+    // the second time takes off what rounding of a large part along q has left of a small rest
     for (int twice = 0; twice < 2; ++twice)
         for (int k = 0; k < n; ++k) {
             double along = 0;
@@ -74,6 +75,8 @@ bool motion_of(const double* own, int m, int d, const double* above, int n, doub
 
 }   // namespace
 
+/// First with one order of twists at all nodes side by side; where that leaves too little of a row or twist
+/// at one of them, node by node.
 bool spacetime_internal::find_motion(const lanes::BlockFunctions& functions, const lanes::JointSize& size,
                                      const HoldingRows& rows, double* z, double* T)
 {
@@ -90,6 +93,8 @@ bool spacetime_internal::find_motion(const lanes::BlockFunctions& functions, con
     return true;
 }
 
+/// Constants of a row are units of the pattern; other entries stand in dense columns of the row's group, row
+/// after row. Twists of other bodies are left out.
 GradientPlaces::GradientPlaces(const ModelTables& tables, const RowPattern& pattern, const JointRows& joint,
                                int b)
 {
@@ -163,6 +168,8 @@ bool HeldBody::find_columns(const NodeGradients& gradients, JointMotion& motion)
                                           motion.z_columns.data(), motion.T_columns.data());
 }
 
+/// Rows and columns are the same nodes in all lanes but lane 0, which with lobatto is node 0 for rows and
+/// node p for columns: only that one is found anew.
 bool HeldBody::find(const NodeGradients& gradients, JointMotion& motion) const
 {
     const auto p = static_cast<std::size_t>(gradients.p), d = static_cast<std::size_t>(size_.d);

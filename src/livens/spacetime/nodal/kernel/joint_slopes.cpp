@@ -40,6 +40,7 @@ void JointSlopes::place(int lane, const lanes::Values& nodes)
     }
 }
 
+/// From the last one back: rows of one joint follow each other, so that their pair is among the last.
 Matrix4& JointSlopes::of(int i, int j)
 {
     const auto found = std::find_if(pairs_.rbegin(), pairs_.rend(),
@@ -97,6 +98,8 @@ void JointSlopes::add_hessian(int r, double mu, Instant at)
                       [&](const SmoothFunction& F, std::size_t first) { add_function(row, F, first, mu); });
 }
 
+/// - mu sum_kl F_kl (dq_k/dX) (dq_l/dX)^T for all pairs of the function's bodies, two a form at most; a body
+/// that several forms share has one place.
 void JointSlopes::add_function(const ConstraintRow& row, const SmoothFunction& function, std::size_t first,
                                double mu)
 {
@@ -126,6 +129,8 @@ void JointSlopes::add_function(const ConstraintRow& row, const SmoothFunction& f
         }
 }
 
+/// Of the moment of forces that stay as they are in space; what they change by stands in the pairs. Forces
+/// of all rows are summed before, so that this is one 3 x 3 matrix a body.
 void JointSlopes::add_turning(int b)
 {
     const BodyTable& body = tables_.bodies[b];

@@ -56,6 +56,8 @@ void KernelGuess::place_series(const TwistSeries& series, double tau, const Inst
     }
 }
 
+/// Where a polynomial goes on, the end of the element by both ways is kept for compare(): of a series that is
+/// not used that is all that is made.
 void KernelGuess::place(const WindowLayout& layout, const InstantState& start, double* place)
 {
     was_followed_ = n_alone_ == 0 && following_.place(layout, place);
@@ -90,6 +92,7 @@ void KernelGuess::keep_end(End& end, const double* place) const
 }
 
 /// How far the end of the element is from there now, lengths and radians.
+/// Vector parts of quaternions are half of small angles.
 double KernelGuess::moved_from(const End& end, const double* place) const
 {
     double far = 0, wide = 0;

@@ -13,12 +13,14 @@ namespace livens {
 
 namespace {
 
+/// An element of so few steps has nothing to gain from still axes.
 constexpr int few_steps = 3;
 
 /// Whether some body's axis of turning turns itself. Where none does, as in a plane, nothing is gyroscopic.
 bool turns_in_space(const ModelTables& tables, const InstantState& start, double h)
 {
     const std::vector<double>& accelerations = start.acceleration[h > 0 ? 1 : 0];
+    // the bound below is the square of an angle of 1e-8 between spin and spin acceleration
     return std::ranges::any_of(tables.bodies, [&](const BodyTable& body) {
         const double *w = start.velocity.data() + body.first + 3, *a = accelerations.data() + body.first + 3;
         if (body.dofs == 3) return false;
@@ -29,6 +31,9 @@ bool turns_in_space(const ModelTables& tables, const InstantState& start, double
 
 }   // namespace
 
+/// Tables of W x W numbers, one after the other: for length 1 k, -K^-1, M, M' and M at rows, for length h
+/// k / h, -h K^-1 and M' / h. Behind them W numbers each: h w_A, h times weights of load points, shares c_A
+/// (radau).
 KernelRule::KernelRule(const ModelTables& tables, const ElementRule& rule, const lanes::Functions* functions)
     : tables_(tables), rule_(rule), width_(functions != nullptr ? functions->width : 0)
 {
@@ -90,6 +95,8 @@ void KernelRule::find_start_rates(const InstantState& start)
                     tables_.bodies[b].center[a] * start_rates_[12 * b + 3 + 3 * a + i];
 }
 
+/// Root of mass times shifts and root of inertia times changes of directors, times the largest |k_AB| / h:
+/// in the units of scaled rows.
 double KernelRule::largest_of_sums(const double* increments) const
 {
     const int W = width_, p = rule_.degree;

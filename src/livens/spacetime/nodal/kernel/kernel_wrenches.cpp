@@ -26,6 +26,8 @@ void KernelWrenches::begin(const WindowLayout& layout)
     if (loads_) loads_->begin(layout.load_points(rule_, 0));
 }
 
+/// Of recorded loads only the arms that their tapes look at are interpolated. X and X' of all bodies are made
+/// only for loads that record nothing, whose F are added to what the others have shared out.
 void KernelWrenches::evaluate_loads(const WindowLayout& layout, const lanes::Pattern& pattern,
                                     const lanes::Values& start, const lanes::Values& nodes,
                                     const lanes::Rule& rule)

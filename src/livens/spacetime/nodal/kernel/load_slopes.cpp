@@ -48,6 +48,8 @@ void LoadSlopes::place(const lanes::Values& nodes)
     }
 }
 
+/// N_i^T dF_i/dX_j N_j and the same by X', scaled; of forces along coordinates products in their place, a
+/// vector a body instead of 6 x 6 a pair. The world has no twists.
 void LoadSlopes::add(int l, const WindowLayout& layout)
 {
     const Load& load = tables_.model->loads()[l];
@@ -75,6 +77,8 @@ void LoadSlopes::add(int l, const WindowLayout& layout)
         }
 }
 
+/// Rounding of X and X' changes f by rounding of |df/dX| |X| + |df/dX'| |X'|, and rows by h times that times
+/// the largest share of g = dq/dX: what terms() is for.
 void LoadSlopes::add_product(const Load& load, const ProductSlopes& slopes, double h)
 {
     SlopesOfProduct found{{load.bodies[0], load.bodies[1]}};
@@ -103,6 +107,7 @@ void LoadSlopes::add_product(const Load& load, const ProductSlopes& slopes, doub
     products_.push_back(std::move(found));
 }
 
+/// Turns are followed from the start of the element to its middle in one step.
 void LoadSlopes::find(const WindowLayout& layout, const lanes::Values& nodes)
 {
     pairs_.clear();

@@ -137,6 +137,7 @@ void MarchKernel::use(const InstantState& start)
     pattern_ = start_->pattern();
     nodes_.resize(*pattern_, functions_->width);
     if (is_radau()) end_.resize(*pattern_, 1);
+    // its places were in the room that was made anew
     guess_.forget_polynomial();
 }
 
@@ -199,6 +200,9 @@ bool MarchKernel::propose(const WindowLayout& layout, Steps kind)
     return true;
 }
 
+/// A round makes numbers of places, a factor of G G^T where it does not fit any more, loads and rows, and a
+/// step. Behind the last step stands one more balance, without a step: rows, loads and multipliers are then
+/// those of the places that are handed on. Comparisons are made so that they fail for what is not a number.
 bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start, const NewtonOptions& options,
                           Steps kind, NewtonReport& report)
 {
@@ -255,6 +259,9 @@ bool MarchKernel::iterate(const WindowLayout& layout, const InstantState& start,
     return std::min(pivot, from.pivots[0]) > least_pivot * least_pivot;   // false: also no number
 }
 
+/// Steps that earlier elements took come first, and behind steps of free bodies those by slopes. Where a
+/// factor was kept from before, or is dear along the joints, another try makes new ones wherever steps are
+/// slow. Of many bodies, whose tangent would be large, combined steps are the last.
 bool MarchKernel::solve(const WindowLayout& layout, const InstantState& start, const NewtonOptions& options,
                         bool soon, NewtonReport& report)
 {
@@ -310,6 +317,7 @@ void MarchKernel::impulses(int A, double* out) const
         *out++ = nodes_.values().impulses[place * functions_->width + lane];
 }
 
+/// The factor's pivots are squares.
 double MarchKernel::pivot(int A) const
 {
     return std::sqrt(A == 0 ? start_->values().pivots[0] : nodes_.values().pivots[lane_of(A)]);

@@ -162,6 +162,8 @@ void ReducedTangent::add_load(const SlopesOfPair& pair, const double* slopes, co
     }
 }
 
+/// Between any two nodes of rank one, (z_A . u) (h S_AB z_B . v_X + C_AB z_B . v_V) with the direction u and
+/// slopes v: inner products are made once a node, for each of its f twists.
 void ReducedTangent::add_product(const SlopesOfProduct& of, const LoadSlopes& slopes, double h)
 {
     const int p = rule_.degree;
@@ -195,6 +197,7 @@ void ReducedTangent::add_product(const SlopesOfProduct& of, const LoadSlopes& sl
         }
 }
 
+/// Forces of joints are of one node alone, which here is a row and a column, in the same lane.
 void ReducedTangent::add_at_node(int node, const SlopesOfPair& pair)
 {
     const int lane = node % rule_.degree, n = tables_.bodies[pair.i].dofs;
@@ -207,6 +210,8 @@ void ReducedTangent::add_at_node(int node, const SlopesOfPair& pair)
     }
 }
 
+/// Twists that an earlier element has chosen are tried first; where they do not span what is free any more,
+/// others are chosen at this start.
 bool ReducedTangent::factorise(const WindowLayout& layout, const JointFactor& start,
                                const lanes::Values& nodes, TangentSlopes& slopes)
 {
@@ -232,6 +237,7 @@ bool ReducedTangent::factorise(const WindowLayout& layout, const JointFactor& st
     return factor_.factorise(*functions_->blocks, size);
 }
 
+/// step <- - Z (Z^T J Z)^-1 Z^T r, with Z of the nodes of rows on the right and of columns on the left.
 void ReducedTangent::propose(const lanes::Values& nodes)
 {
     const int p = rule_.degree, W = functions_->width;

@@ -101,6 +101,7 @@ void ReferencePredictor::follow_body(int body, int element, bool is_backwards, i
                 R[3 * c + r] = e[0] * d[0] + e[1] * d[1] + e[2] * d[2];
             }
         Quaternion q = quaternion_of(R);
+        // q and -q are one turn; the sign goes on from node to node, so that numbers can be interpolated
         const double sign =
             q.s * before.s + q.v[0] * before.v[0] + q.v[1] * before.v[1] + q.v[2] * before.v[2];
         if (sign < 0) q = {-q.s, {-q.v[0], -q.v[1], -q.v[2]}};
@@ -114,6 +115,7 @@ bool ReferencePredictor::place(const WindowLayout& layout, double* place)
 {
     if (motion_ == nullptr) return false;
     const int n_bodies = tables_->n_bodies(), W = functions_->width;
+    // rational functions are not what weigh() interpolates, and there must be as many bodies
     if (!motion_->X.denominators.empty() || motion_->X.degree < lowest_known_degree ||
         motion_->X.n_values != 12 * n_bodies)
         return false;

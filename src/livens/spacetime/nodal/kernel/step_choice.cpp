@@ -43,6 +43,9 @@ KernelTangent& StepChoice::tangent()
     return *tangent_;
 }
 
+/// A factor fits the rows and the length that it was made for. Where factors are dear, and steps of free
+/// bodies that were given up at some length would do at half of it, they are tried again with lobatto once
+/// elements are clearly shorter.
 void StepChoice::begin(const std::shared_ptr<const RowPattern>& pattern, const WindowLayout& layout)
 {
     is_kept_ = is_kept_ && pattern == pattern_ && std::abs(layout.h(0) - h_) <= same_length * std::abs(h_);
@@ -99,6 +102,8 @@ void StepChoice::forget_factor()
     tangent_->ask_joints();
 }
 
+/// Elements by slopes tell what steps of free bodies may cost, each half as much as the one behind it. Free
+/// steps that were too many again put their next trial off, twice as far each time.
 void StepChoice::took(int steps, bool is_solved, bool was_by_tangent)
 {
     last_steps_ = steps;

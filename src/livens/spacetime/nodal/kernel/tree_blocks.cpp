@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// J_uv with rows (i, A) and columns (j, l), row by row: A is the lane of a row's node, l that of a column's,
+// where lane 0 is node p (docs/theory.md, "Without a tangent", All nodes at once). Blocks stay, as zeros, for
+// the next factor; a row of them is a deque, so that references survive when others are made.
 #include "livens/spacetime/nodal/kernel/tree_blocks.h"
 
 #include <algorithm>
@@ -15,6 +18,8 @@ void TreeBlocks::resize(const std::vector<int>& sizes, int n_bodies, int p)
     rows_.assign(sizes.size(), {});
 }
 
+/// The mass of bodies that do not turn, which is 1 in scaled twists: what turns within the element make of it
+/// is O(1) beside k / h, and left to the iteration.
 void TreeBlocks::reset(const ElementRule& rule, double h)
 {
     Numbers k(static_cast<std::size_t>(p_ * p_));

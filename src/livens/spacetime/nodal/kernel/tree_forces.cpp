@@ -102,6 +102,8 @@ void TreeForces::put_pair(const SlopesOfPair& pair, TreeBlocks& blocks) const
     add(pair.by_V, slopes_->loads.in_time_by_V(), 1);
 }
 
+/// Between a body and its parent a slope is kept as 6 x 6 until the body goes; a body by itself, and bodies
+/// of a loop's joint, have blocks, which are diagonal in the nodes.
 void TreeForces::put_of_joint(const SlopesOfPair& pair, const TreePlan& plan, TreeBlocks& blocks)
 {
     const auto add = [&](double* to) {
@@ -133,6 +135,8 @@ int TreeForces::held_body(const SlopesOfProduct& product, const TreePlan& plan) 
     return world;
 }
 
+/// Directions u stand at rows and take z and T there; slopes take those of columns and are spread in time by
+/// h S and C. What is of the parent itself counts as it is.
 ForceAlongTree TreeForces::reduced(const SlopesOfProduct& product) const
 {
     const int p = rule_.degree, f = motion_->f;
@@ -186,6 +190,7 @@ void TreeForces::reduce(int body, int parent, const JointMotion& motion)
         forces_.push_back(reduced(*product));
 }
 
+/// to (i, A; j, l) += on (i; A) by (A; j, l)
 void TreeForces::add_outer(const Numbers& on, const Numbers& by, Numbers& to) const
 {
     const int p = rule_.degree, columns = static_cast<int>(by.size()) / p;

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Bodies move by their joints (HeldBody). Of a joint that closes a loop the unknowns are its multipliers at
+// the nodes of rows: all are free, z = 1, and they hang on nothing (docs/theory.md, "Without a tangent",
+// Stiff loads).
 #include "livens/spacetime/nodal/kernel/tree_joints.h"
 
 #include <algorithm>
@@ -35,6 +38,8 @@ bool TreeJoints::find(int u, const NodeGradients& gradients)
     return u >= tables_.n_bodies() || held_[at].find(gradients, motions_[at]);
 }
 
+/// G_A^T in the rows of bodies, G_B in those of loops, each diagonal in the nodes. node % p is the lane both
+/// ways: node 0 is a row alone (lobatto), and node p a column, with radau also a row.
 void TreeJoints::add_loops(const NodeGradients& gradients, TreeBlocks& blocks) const
 {
     const int p = gradients.p;

@@ -47,12 +47,15 @@ void TreeTangent::pass_to_parent(int b)
         add_from_b(v);
         add_to_b(v);
     }
+    // J_bp has J_bb T before T^T of it goes to J_pp: so the product from both sides is made once
     if (blocks_.find(above, b) != nullptr) add_to_b(above);
     add_to_b(b);
     forces_.add_to_parent(blocks_);
     add_from_b(above);
 }
 
+/// A point of rotors takes off each of those that it is coupled with, but not off pairs of them, as its axes
+/// know nothing of each other.
 bool TreeTangent::eliminate(int b)
 {
     const JointMotion& motion = joints_->motion(b);
@@ -145,6 +148,7 @@ void TreeTangent::go_inwards(int b)
     std::ranges::copy(theta_, left_.begin() + blocks_.first(b));
 }
 
+/// All with which b is coupled are known, as they went later. Multipliers of loops stay inside.
 void TreeTangent::go_outwards(int b, const lanes::Values& nodes)
 {
     const JointMotion& motion = joints_->motion(b);
@@ -165,6 +169,7 @@ void TreeTangent::go_outwards(int b, const lanes::Values& nodes)
         std::copy_n(own + i * p, p, nodes.step + (tables_.bodies[b].first + i) * functions_->width);
 }
 
+/// Rows of loops ask for nothing here: what constraints are off is taken by the projection behind.
 void TreeTangent::propose(const lanes::Values& nodes)
 {
     const int p = rule_.degree;

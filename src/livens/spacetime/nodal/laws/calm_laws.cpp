@@ -35,6 +35,7 @@ CalmLaws::CalmLaws(const ModelTables& tables, const ElementRule& rule)
     }
 }
 
+/// Calm is what is known to be: without lanes, or of fewer than three points, nothing is.
 void CalmLaws::look(const LoadLanes* loads)
 {
     const bool is_known = loads != nullptr && shares_.size() >= fewest_points;
@@ -47,6 +48,7 @@ void CalmLaws::look(const LoadLanes* loads)
     }
 }
 
+/// Numbers follow each other, as angles do through half a turn. Speeds are by shares of the element.
 bool CalmLaws::are_guards_calm(const LoadLanes& loads, int load) const
 {
     const std::vector<Guard>& guards = tables_.model->loads()[load].guards;

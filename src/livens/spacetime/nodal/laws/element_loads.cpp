@@ -52,6 +52,7 @@ void ElementLoads::interpolate(const WindowLayout& layout, const NodePositions& 
     }
 }
 
+/// At all nodes of the window, one after the other: an angle has its turns from the node before.
 void ElementLoads::count_turns(const WindowLayout& layout, const NodePositions& nodes)
 {
     angles_.clear();
@@ -63,6 +64,7 @@ void ElementLoads::count_turns(const WindowLayout& layout, const NodePositions& 
     }
 }
 
+/// Those of the last node that is not behind the load point.
 std::span<const double> ElementLoads::angles(int e, int c) const
 {
     if (angles_.empty()) return {};
@@ -100,6 +102,8 @@ void ElementLoads::interpolate_all(const WindowLayout& layout, const NodePositio
             }
 }
 
+/// Lanes know bodies about their centres of mass, rows about their reference points: X goes to the former,
+/// and F back by the transposed map. Turns are counted from the first load point on, from lane to lane.
 void ElementLoads::add_element(const WindowLayout& layout, const NodePositions& nodes, int e, Workspace& at)
 {
     const int n_nodes = rule_.size(), n = 12 * tables_.n_bodies(), W = at.lanes->width();

@@ -97,6 +97,8 @@ LawOnPath::LawOnPath(const ModelTables& tables, const ElementRule& rule)
     : tables_(tables), basis_(lobatto_basis(rule.degree + 2))
 {}
 
+/// Numbers q at the points where they are kept, from the polynomial through the looks at `shares`: so laws
+/// that were looked at in lanes need no other look.
 void LawOnPath::use(const std::vector<double>& shares)
 {
     const LagrangeBasis looks(shares);
@@ -124,6 +126,8 @@ void LawOnPath::follow(const InspectedLaw& law, ElementPath& path, const std::ve
     if (law.inside.steepest) bound_derivatives();
 }
 
+/// Of q(s) by shares s, so that h is in them: slopes at the points, and the largest second and third
+/// derivatives, by which chords of q and of its slope may be off.
 void LawOnPath::bound_derivatives()
 {
     constexpr double between = 2;   // nodes a derivative may be larger than at them
@@ -181,6 +185,7 @@ EnclosedValue LawOnPath::range(std::size_t number, double width) const
             {range.slope.low - more, range.slope.high + more}};
 }
 
+/// |df_k/ds| between two shares; time is one more number, whose slope by s is h.
 void LawOnPath::bound_slopes(double first, double last, std::span<double> bounds)
 {
     const std::size_t size = basis_.size();

@@ -111,6 +111,7 @@ void LooksInLanes::keep(std::size_t first)
     }
 }
 
+/// Width by width along the way; angles go on from the last share of one batch to the next.
 void LooksInLanes::look(const WindowLayout& layout, const NodePositions& nodes, int e,
                         std::span<const double> angles)
 {
@@ -136,6 +137,7 @@ void LooksInLanes::look(const WindowLayout& layout, const NodePositions& nodes, 
     }
 }
 
+/// Numbers of a law stand one behind the other, those of watched()[0] first, each at all shares and points.
 void LooksInLanes::take(int load, std::size_t which, std::size_t look, double* out) const
 {
     const auto of = watched(load);

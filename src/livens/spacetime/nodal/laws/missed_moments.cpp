@@ -134,6 +134,8 @@ void divide(LawOnPath& path, const CheckedRule& rule, std::vector<Panel>& panels
     }
 }
 
+/// The second rule has both ends and the Gauss points without the middle one, with weights that integrate the
+/// polynomial through them: Gauss points do that exactly. The one left out has the weight 0.
 CheckedRule made_rule(int n_points)
 {
     CheckedRule rule{gauss(n_points), {}};

@@ -124,6 +124,7 @@ Passage Search::bisect(LawState inside, LawState outside)
          slack *= 0.5) {
         const double width = outside.share - inside.share, a = margin(inside), b = margin(outside);
         const double leaves = inside.share + width * (a / (a - b)), side = middle < leaves ? -1 : 1;
+        // towards the middle from there, so that either end may move; no farther from the middle than `most`
         const double nudge = 0.2 * width * width / way, most = std::max(0.0, slack - 0.5 * width);
         double next = std::abs(middle - leaves) > nudge ? leaves + side * nudge : middle;
         if (!(std::abs(next - middle) <= most)) next = middle - side * most;

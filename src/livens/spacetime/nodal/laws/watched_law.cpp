@@ -8,6 +8,7 @@
 
 namespace livens {
 
+/// Of a load, or, where that is negative, of a row, whose one guard follows a function of its coordinates.
 WatchedLaw::WatchedLaw(const ModelTables& tables, int load, int row) : tables_(tables), load_(load), row_(row)
 {
     if (load >= 0) {
@@ -63,6 +64,8 @@ LoadForces WatchedLaw::forces(ElementPath& path, const LawState& at) const
     return F;
 }
 
+/// `before` and `after` are as near as numbers are: a force that goes on has not changed there. Rows of
+/// constraints are not taken to jump.
 bool WatchedLaw::jumps(ElementPath& path, const LawState& before, const LawState& after,
                        const LawState& end) const
 {
