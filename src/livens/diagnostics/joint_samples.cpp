@@ -133,19 +133,18 @@ void forget_unbounded(ActingModels& models, const Motion& motion, const State& s
     const std::shared_ptr<const ActingModel> known = models.at(state.t);
     const ActingModel& acting = *known;
     const State start = motion.at_end(motion.mesh.element_at(state.t));
-    const std::vector<int> rows =
-        row_rank(frozen(acting.model, {start.t}), start.X, all_rows(acting.model)).independent;
-    const Model now = frozen(acting.model, {state.t});
-    const auto n_lost = [&](const State& at, const std::vector<int>& some) {
-        return row_rank(now, at.X, some, lost).dependent.size();
+    const Model then = frozen(acting.model, {start.t}), now = frozen(acting.model, {state.t});
+    const std::vector<int> rows = row_rank(then, start.X, all_rows(acting.model)).independent;
+    const auto n_lost = [&](const Model& model, const State& at, const std::vector<int>& some) {
+        return row_rank(model, at.X, some, lost).dependent.size();
     };
-    const std::size_t n = n_lost(state, rows);
+    const std::size_t n = n_lost(now, state, rows);
     // Rows that are dependent at the start of the element as well are redundant, not lost.
-    if (n <= n_lost(start, rows)) return;
+    if (n <= n_lost(then, start, rows)) return;
     for (int j = 0; j < static_cast<int>(acting.model.joints().size()); ++j) {
         std::vector<int> others = rows;
         std::erase_if(others, [&](int row) { return acting.model.row_joint(row) == j; });
-        if (n_lost(state, others) == n) continue;
+        if (n_lost(now, state, others) == n) continue;
         JointSample& sample = samples[acting.joints[j]];
         sample.is_bounded = false;
         sample.left = sample.right = unknown;

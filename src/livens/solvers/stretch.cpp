@@ -177,7 +177,8 @@ int Stretch::choose(int k)
             const int place = 64 * w + std::countr_zero(left);
             candidates_.push_back(place);
             const double size = std::abs(front_.row(place)[slot]);
-            if (!(size <= largest)) largest = size, pivot = place;
+            // what is no number stays, and is refused below
+            if (!(size <= largest) && !std::isnan(largest)) largest = size, pivot = place;
         }
     return std::isfinite(largest) && largest > least_pivot * largest_[k] ? pivot : -1;
 }

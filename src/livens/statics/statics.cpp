@@ -105,7 +105,7 @@ double largest_displacement(const ModelTables& tables, const double* twists)
             if (tables.model->bodies()[static_cast<std::size_t>(b)].holds_states()) continue;
             const double* v = twists + tables.bodies[b].first + part;
             const double now = norm(Vector3{v[0], v[1], v[2]}) / (part == 0 ? tables.length : 1);
-            if (!(now <= size)) size = now;   // nan too
+            if (!(now <= size) && !std::isnan(size)) size = now;   // nan too
         }
     return size;
 }

@@ -108,6 +108,46 @@ TEST(Repeat, IsTheSameAsWritingItOut)
     EXPECT_EQ(a.loads().size(), b.loads().size());
 }
 
+/// Times of output behind an end that is found are left out, in whatever way the file says the rest.
+TEST(Repeat, LeavesUnknownNumbersUnknown)
+{
+    const std::string found = R"(format = 1
+gravity = [0, 0, -9.81]
+[time]
+end = { unknown = 2.6 }
+elements = 16
+periodic = true
+output = [0.5, 20]
+[[body]]
+name = "bob"
+shape = { point = true }
+mass = 1
+position = [1, 0, 0]
+[[joint]]
+name = "rod"
+type = "rod"
+between = ["world", "bob"]
+[[joint]]
+name = "plane"
+type = "point_in_plane"
+between = ["world", "bob"]
+points = [[0, 0, 0], [0, 0, 0]]
+axis = [0, 1, 0]
+[start.known]
+"bob.z" = 0
+"bob.vz" = 0
+)",
+                      repeat = "[[repeat]]\ncount = 1\n[[repeat.load]]\nname = \"wind {i}\"\n"
+                               "type = \"force\"\nbody = \"bob\"\nvalue = [0, 0, 0]\n";
+    for (const std::string& text : {found, found + repeat}) {
+        EXPECT_TRUE(read(text).scenario) << shown(read(text));
+        EXPECT_FALSE(read(replaced(text, "{ unknown = 2.6 }", "2.6")).scenario) << "20 s are behind it";
+    }
+    const std::string no_number = replaced(found, "periodic = true", "periodic = { unknown = 1 }");
+    EXPECT_FALSE(read(no_number).scenario);
+    EXPECT_EQ(read(no_number).diagnostics.front().code, read(no_number + repeat).diagnostics.front().code);
+}
+
 TEST(Repeat, NamesAndFactorsOfCouplingsHaveTheIndex)
 {
     const ScenarioResult result = read(replaced(chain, "[[repeat.load]]", R"([[repeat.joint]]

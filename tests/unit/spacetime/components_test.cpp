@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/spacetime/march/condition_rows.h"
 #include "livens/spacetime/nodal/window.h"
 #include <mechanisms.h>   // of all tests, not of this folder
 
@@ -42,6 +43,31 @@ std::vector<Case> cases()
              {"box.x", "box.y", "box.z", "box.rotation_x", "box.rotation_y", "box.rotation_z"},
              {"box.vx", "box.vy", "box.vz"},
              {"box.angular_velocity_x", "box.angular_velocity_y", "box.angular_velocity_z"}}};
+}
+
+/// What is alike at both ends is the end less the start: where both are given beside it, one of three rows
+/// says nothing, and unknown numbers, of which the same holds, do not hide that.
+TEST(ComponentEquations, OfBothEndsAreThoseOfTheEndLessThoseOfTheStart)
+{
+    const Model model = hinged_links();
+    const ModelTables tables(model, consistent_start(model, model.start(), StartPolicy::project).independent);
+    State there = model.start();
+    for (std::size_t b = 0; b < there.X.size(); ++b)
+        there.V[b] = rate(there.X[b], {0.3, -0.2, 0.1}, {0, 1.3 - 0.5 * static_cast<double>(b), 0});
+    EndPoint start(tables), end(tables);
+    ASSERT_TRUE(start.place(model.start()) && end.place(there));
+    for (const char* name : {"shoulder.angle", "elbow.angle_rate", "lower.vx"}) {
+        const StateQuantity q = state_quantities(model, name).at(0);
+        const std::vector<Condition> all{
+            {q, 0.1, Condition::At::start}, {q, 0.1, Condition::At::end}, {q, 0, Condition::At::both}};
+        const DenseMatrix rows = rows_at({&tables, &tables}, all, {&start, &end}, 0.7, {});
+        double largest = 0;
+        for (int j = 0; j < rows.cols; ++j) {
+            EXPECT_EQ(rows(2, j), rows(1, j) - rows(0, j)) << name << ' ' << j;
+            largest = std::max({largest, std::abs(rows(0, j)), std::abs(rows(1, j))});
+        }
+        EXPECT_GT(largest, 0.01);
+    }
 }
 
 /// A share s of Newton's step leaves 1 - s of it, up to s^2: of a tangent that is exact, off a solution, with

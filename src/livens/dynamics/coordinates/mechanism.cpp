@@ -201,7 +201,7 @@ double Mechanism::size_of_twists(std::span<const double> twists) const
     for (const BodyTable& body : bodies)
         for (int i = 0; i < body.dofs; ++i) {
             const double size = std::abs(twists[body.first + i]) / (i < 3 ? length : 1);
-            if (!(size <= largest)) largest = size;   // keeps what is no number
+            if (!(size <= largest) && !std::isnan(largest)) largest = size;   // keeps what is no number
         }
     return largest;
 }
@@ -224,7 +224,7 @@ double Mechanism::open(const Configuration& X, int* row) const
     double largest = 0;
     for (int r = 0; r < model.n_rows(); ++r) {
         const double size = std::abs(values[r]) / model.row(r).scale;
-        if (size <= largest) continue;
+        if (size <= largest || std::isnan(largest)) continue;   // keeps what is no number
         largest = size;
         if (row != nullptr) *row = r;
     }

@@ -23,7 +23,8 @@ double InstantSystem::move_towards_rows(InstantState& state)
     for (int c = 0; c < tables_.rank; ++c) {
         const double phi = tables_.rows.value(rows[c], {state.t}, state.X.data());
         row_rates_[c] = -phi;
-        open = std::max(open, std::abs(phi) / tables_.rows[rows[c]].row->scale);
+        const double size = std::abs(phi) / tables_.rows[rows[c]].row->scale;
+        if (!(size <= open) && !std::isnan(open)) open = size;   // keeps what is no number
     }
     if (open <= closed_enough) return open;
     // The least step in the mass metric with Ghat y = -Phi: Y R^-T S^-1 (-Phi), or zero, projected.

@@ -75,6 +75,7 @@ std::array<int, 2> new_pipe()
         ::close(end);
         end = moved;
     }
+    if (ends[0] < 0 || ends[1] < 0) throw IoError("no pipe can be made: too many files are open", fault);
     return ends;
 }
 

@@ -14,15 +14,16 @@ namespace {
 /// Messages quote the file, and control characters are not allowed in comments of TOML.
 std::string head_of(const std::filesystem::path& file, const std::vector<Diagnostic>& told)
 {
-    std::string text = "# From " + file.filename().string() + ", by livens import.\n";
-    for (const Diagnostic& d : told) {
-        text += "# " + d.code;
-        if (d.line > 0) text += ", line " + std::to_string(d.line);
-        text += ": " + d.message + "\n";
-    }
-    std::string safe;
-    for (const char c : text) safe += static_cast<unsigned char>(c) < 0x20 && c != '\n' ? ' ' : c;
-    return safe;
+    // Names of a stranger's file may hold line ends: what follows one would be no comment any more.
+    const auto comment = [](std::string text) {
+        for (char& c : text)
+            if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+        return "# " + text + "\n";
+    };
+    std::string text = comment("From " + file.filename().string() + ", by livens import.");
+    for (const Diagnostic& d : told)
+        text += comment(d.code + (d.line > 0 ? ", line " + std::to_string(d.line) : "") + ": " + d.message);
+    return text;
 }
 
 }   // namespace

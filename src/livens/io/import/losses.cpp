@@ -24,13 +24,15 @@ std::string with_word(std::string_view text, const std::string& word)
     return all;
 }
 
-/// " ('a', 'b' and 3 more)"
+/// " ('a', 'b' and 3 more)". Of more names than are kept nobody knows how many there are.
 std::string listed(const std::vector<std::string>& names, std::size_t most)
 {
     if (names.empty()) return {};
     std::string text;
     for (std::size_t i = 0; i < std::min(names.size(), most); ++i) text += (i > 0 ? ", " : "") + names[i];
-    if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
+    if (names.size() > most)
+        text += std::string(names.size() > most_listed ? " and at least " : " and ") +
+                std::to_string(names.size() - most) + " more";
     return " (" + text + ")";
 }
 

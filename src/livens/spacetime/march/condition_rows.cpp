@@ -55,7 +55,9 @@ DenseMatrix rows_at(const std::array<const ModelTables*, 2>& tables, const std::
         for (int i = 0; i < m; ++i) {
             const Condition& one = conditions[i];
             if (one.at == (end == 0 ? Condition::At::end : Condition::At::start)) continue;
-            const double unit = unit_of(one.quantity, tables[end]->length, duration);
+            // of both ends it is what the end has less what the start has
+            const double sign = end == 0 && one.at == Condition::At::both ? -1 : 1;
+            const double unit = sign * unit_of(one.quantity, tables[end]->length, duration);
             for (int j = 0; j < f; ++j) {
                 const double size = point.size_along(point.basis(), point.maps(), j) * unit;
                 rows(i, first + j) = D(i, j) / size;

@@ -54,6 +54,7 @@ public:
     {
         Node to;
         to.kind = from.kind;
+        to.is_unknown = from.is_unknown;
         to.place = placed(from.place);
         to.number = from.number;
         if (from.content == nullptr) return to;
@@ -201,6 +202,7 @@ Node same(const Node& from)
 {
     Node to;
     to.kind = from.kind;
+    to.is_unknown = from.is_unknown;
     to.place = from.place;
     to.number = from.number;
     if (from.content == nullptr) return to;
