@@ -13,13 +13,13 @@ struct SineCosine {
 };
 using Wide = long double;   // of which there is one code only
 
-/// To a unit in the last place. Beyond 0.8 by the library's long double, less quarters of a turn by parts of
-/// pi / 2 whose products are exact; where long double is no wider than double, bits are the library's.
+/// To a unit in the last place. Beyond 0.8 by the library's long double; beyond 2.3, where that takes a long
+/// way, less quarters of a turn by parts of pi / 2 whose products are exact, unless it is no wider.
 inline SineCosine sine_cosine(double x)
 {
     if (!(std::abs(x) <= 0.8)) {
-        const bool is_near = std::abs(x) < 1e6 && std::numeric_limits<Wide>::digits >= 64;
-        const long n = is_near ? static_cast<long>(x * 0.6366197723675814 + (x < 0 ? -0.5 : 0.5)) : 0;
+        const bool is_far = std::abs(x) > 2.3 && std::abs(x) < 1e6 && std::numeric_limits<Wide>::digits >= 64;
+        const long n = is_far ? static_cast<long>(x * 0.6366197723675814 + (x < 0 ? -0.5 : 0.5)) : 0;
         const Wide less =
             x - n * 0x1.921fb54442p+0L - n * 0x1.a308d31318p-41L - n * 0x1.8a2e0370734a4408p-81L;
         const auto sine = static_cast<double>(std::sin(less)), cosine = static_cast<double>(std::cos(less));

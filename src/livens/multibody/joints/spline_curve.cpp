@@ -69,7 +69,6 @@ public:
         }
         const double begin = knots[static_cast<std::size_t>(around)];
         for (double& knot : knots) knot -= begin;
-        first_ = 0;
         last_ = knots[static_cast<std::size_t>(n_knots - 1 - around)];
         keep_knots(knots, around);
         pieces_.resize(knots.size() + 1);
@@ -215,7 +214,7 @@ private:
     {
         Vector3 plane{};
         double widest = 0;
-        const Vector3 begin = unit(shape(first_).first);
+        const Vector3 begin = unit(shape(0).first);
         for (const double s : places_) {
             const CurvePoint here = shape(s);
             if (!(norm(here.first) > 0.05))   // by chord lengths it is one where the curve is straight
@@ -248,7 +247,7 @@ private:
     double cells_per_length_ = 0;
     Quadrature rule_ = gauss(5);
     bool is_closed_, is_flat_ = false;
-    double first_ = 0, last_ = 0;
+    double last_ = 0;   ///< the first is 0
     std::vector<double> knots_;
     std::vector<double> places_;
     std::vector<Vector3> normals_;   ///< there
