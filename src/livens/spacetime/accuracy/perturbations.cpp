@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "livens/diagnostics/largest.h"
 #include "livens/dynamics/rows/projection.h"
@@ -185,7 +186,9 @@ State beside(const Model& model, const State& state, const Kicks& kicks, double 
     for (std::size_t b = 0; b < kicks.size(); ++b)
         moves.push_back(model.bodies()[b].is_point ? configuration(kicks[b].shift, Matrix3{})
                                                    : rate(state.X[b], kicks[b].shift, kicks[b].turn));
-    const Model still = model.has_drives() ? frozen(model, {state.t}) : model;
+    std::optional<Model> without_drives;
+    if (model.has_drives()) without_drives = frozen(model, {state.t});
+    const Model& still = without_drives ? *without_drives : model;
     if (!rows.empty())
         moves = (are_roundings ? nearest_if_alike(still, state.X, moves, rows)
                                : nearest_rates(still, state.X, moves, rows));
