@@ -1945,7 +1945,7 @@ livens_mutant(NAME rows_in_full_registers_alone
 # Rows of U that are solved together taken for one of no triangle.
 livens_mutant(NAME factors_without_their_triangles
               FILE solvers/detail/rows_in_registers.h
-              OLD [[for (int l = k + 1; l < 4; ++l) x[i + k] -= d[k * n + l] * x[i + l];]]
+              OLD [[for (int l = k + 1; l < 4; ++l) sums[k] += d[k * n + l] * x[i + l];]]
               NEW [[;]]
               RECOMPILE solvers/rows_sse2.cpp
               TESTS_OF unit_solvers

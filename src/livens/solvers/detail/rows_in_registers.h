@@ -207,8 +207,8 @@ void reflect_rows(double* z, int n, double beta, const double* v, int rows)
     for (; c < n; ++c) reflect_columns<double>(z + c, n, beta, v, rows);
 }
 
-/// x_k -= a_k y of four rows a_k of n numbers, so far apart.
-inline void subtract_four_products(double* x, const double* a, std::ptrdiff_t apart, const double* y, int n)
+/// sums_k = a_k y of four rows a_k of n numbers, so far apart.
+inline void multiply_four(const double* a, std::ptrdiff_t apart, const double* y, int n, double* sums)
 {
     const double *a1 = a + apart, *a2 = a1 + apart, *a3 = a2 + apart;
     Held s0{}, s1{}, s2{}, s3{};
@@ -220,36 +220,39 @@ inline void subtract_four_products(double* x, const double* a, std::ptrdiff_t ap
         s2 += at(a2 + i) * v;
         s3 += at(a3 + i) * v;
     }
-    double t0 = sum_of(s0), t1 = sum_of(s1), t2 = sum_of(s2), t3 = sum_of(s3);
+    sums[0] = sum_of(s0);
+    sums[1] = sum_of(s1);
+    sums[2] = sum_of(s2);
+    sums[3] = sum_of(s3);
     for (; i < n; ++i) {
-        t0 += a[i] * y[i];
-        t1 += a1[i] * y[i];
-        t2 += a2[i] * y[i];
-        t3 += a3[i] * y[i];
+        sums[0] += a[i] * y[i];
+        sums[1] += a1[i] * y[i];
+        sums[2] += a2[i] * y[i];
+        sums[3] += a3[i] * y[i];
     }
-    x[0] -= t0;
-    x[1] -= t1;
-    x[2] -= t2;
-    x[3] -= t3;
 }
 
-/// Four rows at a time: x is read once for them, and their sums do not wait for each other.
+/// Four rows at a time: x is read once for them, and their sums do not wait for each other. What a row takes
+/// off is summed before it is taken off, so that x is rounded once.
 void solve_factors(double* x, const double* factors, int n)
 {
+    double sums[4];
     const int fours = n - n % 4;
     for (int i = 0; i < fours; i += 4) {
         const double *r = factors + std::ptrdiff_t{n} * i, *d = r + i;
-        subtract_four_products(x + i, r, n, x, i);
-        for (int k = 1; k < 4; ++k)
-            for (int l = 0; l < k; ++l) x[i + k] -= d[k * n + l] * x[i + l];
+        multiply_four(r, n, x, i, sums);
+        for (int k = 0; k < 4; ++k) {
+            for (int l = 0; l < k; ++l) sums[k] += d[k * n + l] * x[i + l];
+            x[i + k] -= sums[k];
+        }
     }
     for (int i = fours; i < n; ++i) x[i] -= inner(factors + std::ptrdiff_t{n} * i, x, i);
     for (int i = n - 4; i >= 0; i -= 4) {
         const double* d = factors + std::ptrdiff_t{n} * i + i;
-        subtract_four_products(x + i, d + 4, n, x + i + 4, n - i - 4);
+        multiply_four(d + 4, n, x + i + 4, n - i - 4, sums);
         for (int k = 3; k >= 0; --k) {
-            for (int l = k + 1; l < 4; ++l) x[i + k] -= d[k * n + l] * x[i + l];
-            x[i + k] /= d[k * n + k];
+            for (int l = k + 1; l < 4; ++l) sums[k] += d[k * n + l] * x[i + l];
+            x[i + k] = (x[i + k] - sums[k]) / d[k * n + k];
         }
     }
     for (int i = n % 4 - 1; i >= 0; --i) {
