@@ -207,6 +207,17 @@ double NodePositions::size_of(const double* twist) const
     return size;
 }
 
+/// Bases are freed as they were made: what one thread does while others have nothing to do counts twice.
+Nodes::~Nodes()
+{
+    const auto n = static_cast<int>(bases_.size());
+    if (!Crew::divides(n, least_shared)) return;
+    try {
+        for_each_item(n, least_shared, [&](int A) { bases_[A] = ConstraintBasis(); });
+    } catch (...) {   // this thread is stopped: what is left goes with the rest
+    }
+}
+
 void Nodes::open(const WindowLayout& layout)
 {
     NodePositions::open(layout);

@@ -81,6 +81,9 @@ private:
 class Nodes : public NodePositions {
 public:
     using NodePositions::NodePositions;
+    ~Nodes();   ///< by shares
+    Nodes(const Nodes&) = delete;
+    Nodes& operator=(const Nodes&) = delete;
 
     void open(const WindowLayout& layout);
     /// Node A is a known state, whose basis and maps serve; node 0, or the last where X is given there. The
