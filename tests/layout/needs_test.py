@@ -41,12 +41,12 @@ class Needs(unittest.TestCase):
         run(self.folder, "git", "checkout", "-q", "-f", "-B", "branch", "main")
         run(self.folder, "git", "clean", "-q", "-f", "-d")
 
-    def change(self, *paths):
+    def change(self, *paths, line="int changed;"):
         for path in paths:
             file = self.folder / path
             file.parent.mkdir(parents=True, exist_ok=True)
             with file.open("a") as text:
-                text.write("// changed\n")
+                text.write(f"{line}\n")
 
     def commit(self, *paths):
         self.change(*paths)
@@ -68,6 +68,12 @@ class Needs(unittest.TestCase):
         faults = (ROOT / "tests/mutants/faults.cmake").read_text()
         self.assertEqual(len(mutants), faults.count("FILE time/quadrature.cpp"))
         self.assertEqual(words, {"fuzzers"})   # files have laws in time
+
+    def test_a_line_of_comment_selects_no_mutants(self):
+        self.change("src/livens/time/quadrature.cpp", line="    // why it is so")
+        self.assertEqual(self.needed()[1], {"none"})
+        self.change("src/livens/time/quadrature.cpp", line="int x;   // why it is so")
+        self.assertIn("lobatto_weight", self.needed()[1])
 
     def test_a_test_selects_the_mutants_that_it_must_notice(self):
         paths = (self.folder / "tests/unit/time").glob("*.cpp")
