@@ -153,15 +153,10 @@ double RowTables::value(int r, Instant at, const double* X, const double* g) con
 
 double RowTables::value(int r, Instant at, const double* X) const
 {
-    const RowTable& t = tables_[r];
-    if (!t.is_quadratic) return constraint_value(*t.row, at, Configurations(X));
-    double linear = 0;
-    for (int side = 0; side < t.n_sides; ++side) {
-        const double* x = X + 12 * t.bodies[side];
-        for (const int a : t.columns[side])
-            for (int i = 0; i < 3; ++i) linear += t.B[side].a[a + i] * x[a + i];
-    }
-    return 0.5 * form_at(t, X) + linear + t.row->c;
+    // By the gradient, which has the differences of places: squares of these would have no digits far away.
+    double g[gradient_size];
+    if (tables_[r].is_quadratic) gradient(r, at, X, g);   // others do not look at it
+    return value(r, at, X, g);
 }
 
 double RowTables::curvature(int r, Instant at, const double* X, const double* V) const
