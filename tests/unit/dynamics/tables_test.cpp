@@ -408,5 +408,22 @@ TEST(ModelTables, BodiesWithoutInertiaKeepTheirMassAndLoseTheMetric)
     EXPECT_GT(inner(dX, dX), 1e-3);
 }
 
+/// A row that is closed stays so hundreds of kilometres away: squares of places would leave 1e-5 there.
+TEST(Tables, ValuesKeepTheirDigitsFarFromTheOrigin)
+{
+    for (const double away : {0.0, 1e6 / 3}) {
+        Model model;
+        model.add_body(point_mass("one", 1, {away, away, 0}));
+        model.add_body(point_mass("other", 1, {away + 0.75, away + 1, 0}));
+        model.add_joint(rod("rod", 0, 1, {}, 1.25));
+        const ModelTables tables(model, every_row(model));
+        std::vector<double> X;
+        for (const Body& body : model.bodies()) X.insert(X.end(), std::begin(body.X.a), std::end(body.X.a));
+        EXPECT_LT(std::abs(tables.rows.value(0, now, X.data())), 1e-9) << away;
+        X[12] += 1e-3;
+        EXPECT_GT(std::abs(tables.rows.value(0, now, X.data())), 1e-5) << away;
+    }
+}
+
 }   // namespace
 }   // namespace livens::tables_test
