@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "livens/multibody/model.h"
+
 namespace livens::benchmarks {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "livens/dynamics/start/prepared.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens::benchmarks {

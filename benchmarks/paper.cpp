@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "livens/multibody/model.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens::benchmarks {

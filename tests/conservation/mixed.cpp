@@ -2,6 +2,7 @@
 // What the paper's elements keep, where, and what they do not.
 #include "livens/base/error.h"
 #include "livens/diagnostics/diagnostics.h"
+#include "livens/multibody/model.h"
 #include "livens/time/quadrature.h"
 #include "mixed_problems.h"
 

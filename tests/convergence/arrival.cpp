@@ -5,6 +5,7 @@
 
 #include "convergence/studies.h"
 #include "livens/dynamics/start/consistent_start.h"
+#include "livens/multibody/model.h"
 
 namespace livens::tests::arrival_test {
 namespace {

@@ -7,6 +7,7 @@
 #include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/multibody/joints/spline_curve.h"
+#include "livens/multibody/model.h"
 
 namespace livens::tests::joints_test {
 namespace {

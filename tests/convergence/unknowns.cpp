@@ -49,7 +49,15 @@ Problem problem_of(const std::vector<UnknownNumber>& numbers, const Made& made)
     for (const UnknownNumber& number : numbers) guesses.push_back(number.guess);
     const Rebuilt first = rebuilt(made(guesses));
     Problem problem{{first.model->start(), Known::nothing, {}, Known::nothing, first.components}};
-    problem.unknowns = {numbers, [=](std::span<const double> values) { return rebuilt(made(values)); }};
+    problem.unknowns = {numbers, [=](std::span<const double> values) {
+                            Rebuilt none;
+                            try {
+                                return rebuilt(made(values));
+                            } catch (const InputError& error) {
+                                none.refused = error.complaint();
+                            }
+                            return none;
+                        }};
     return problem;
 }
 

@@ -11,6 +11,8 @@
 #include "fuzz/edits.h"
 #include "fuzz/round_trip.h"
 
+#include "livens/multibody/model.h"
+
 namespace livens {
 
 namespace {

@@ -4,6 +4,8 @@
 
 #include "fuzz/edits.h"
 
+#include "livens/multibody/model.h"
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     using namespace livens;

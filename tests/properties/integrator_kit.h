@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "livens/multibody/model.h"
 #include "livens/spacetime/solve.h"
 #include "properties/kit.h"
 

@@ -4,6 +4,8 @@
 
 #include "mixed_problems.h"
 
+#include "livens/multibody/events.h"
+
 namespace livens {
 
 namespace {

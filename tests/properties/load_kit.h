@@ -10,6 +10,7 @@
 #include "livens/dynamics/lanes/aligned_doubles.h"
 #include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/loads.h"
+#include "livens/multibody/model.h"
 #include "properties/kit.h"
 #include "unit/multibody/random_states.h"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "livens/multibody/model.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens::tests::reactions_test {

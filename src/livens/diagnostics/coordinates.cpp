@@ -127,6 +127,11 @@ JointCoordinates::JointCoordinates(const Model& model, const Motion& motion)
       followed_(model, motion, all_coordinates(model))
 {}
 
+const NamedCoordinate& JointCoordinates::coordinate(int i) const
+{
+    return model_.joints()[places_[i].joint].coordinates[places_[i].coordinate];
+}
+
 std::vector<CoordinateValue> JointCoordinates::at(double t) const
 {
     return places_.empty() ? std::vector<CoordinateValue>() : at(sample_state(motion_, t));

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 #include "livens/multibody/unwrapped_angles.h"
 
@@ -63,10 +62,7 @@ public:
     JointCoordinates(const Model& model, const Motion& motion);
 
     const std::vector<Place>& places() const { return places_; }
-    const NamedCoordinate& coordinate(int i) const
-    {
-        return model_.joints()[places_[i].joint].coordinates[places_[i].coordinate];
-    }
+    const NamedCoordinate& coordinate(int i) const;
     /// Of all places at t, after snap_to_element_end().
     std::vector<CoordinateValue> at(double t) const;
     /// In a state at an instant of the motion, as sample_exactly() has it; see FollowedCoordinates.
@@ -123,4 +119,4 @@ struct LostTurn {
 };
 LostTurn find_lost_turn(const Model& model, const Motion& motion);
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens

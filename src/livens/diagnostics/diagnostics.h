@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 
 namespace [[gnu::visibility("default")]] livens {

@@ -12,6 +12,7 @@
 
 #include "livens/base/elementary.h"
 #include "livens/diagnostics/largest.h"
+#include "livens/multibody/model.h"
 #include "livens/solvers/patience.h"
 
 namespace livens {

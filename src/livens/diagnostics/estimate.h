@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "livens/diagnostics/sample.h"
-#include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 
 namespace [[gnu::visibility("default")]] livens {
@@ -123,4 +122,4 @@ private:
     std::vector<int> given_places_;   // element ends
 };
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens

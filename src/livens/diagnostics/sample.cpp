@@ -14,6 +14,7 @@
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/model.h"
 
 namespace livens {
 

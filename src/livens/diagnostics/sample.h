@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "livens/dynamics/instant/reactions.h"
-#include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+struct Body;
 
 /// One body at one instant. A point mass has no orientation: its directors, quaternion and angular velocities
 /// are nan.
@@ -96,4 +97,4 @@ private:
     std::shared_ptr<Parts> parts_;
 };
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens

@@ -10,6 +10,7 @@
 #include "livens/diagnostics/detail/sampler.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/diagnostics/largest.h"
+#include "livens/multibody/model.h"
 #include "livens/solvers/patience.h"
 
 namespace livens {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "livens/diagnostics/acceptance.h"
-#include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 #include "livens/solvers/report.h"
 #include "livens/spacetime/method.h"
@@ -151,4 +150,4 @@ public:
     using IoError::IoError;
 };
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens

@@ -16,18 +16,9 @@
 #include "livens/multibody/joints.h"
 #include "livens/multibody/loads.h"
 #include "livens/multibody/sensors.h"
+#include "livens/multibody/state.h"
 
 namespace [[gnu::visibility("default")]] livens {
-
-/// Positions and their rates of all bodies at one instant.
-struct State {
-    double t = 0;
-    std::vector<Matrix34> X;
-    std::vector<Matrix34> V;
-    std::vector<double> angles{};   ///< of loads, see Turns; empty: no turns since the bodies were stated
-    /// Of a motion: controllers that are asked at t were asked.
-    bool is_of_motion = false;
-};
 
 /// A place of a body, or of the world, by its name.
 struct NamedPoint {
@@ -193,4 +184,4 @@ bool acts_on_states(const Model& model, const Load& load);
 /// Weight of a body: F = g (m e_0)^T; of what is no matter none.
 Matrix34 weight(const Body& body, const Vector3& gravity);
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "livens/base/error.h"
+#include "livens/multibody/model.h"
 #include "livens/multibody/wording.h"
 #include "livens/time/basis.h"
 

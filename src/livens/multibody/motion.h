@@ -6,11 +6,14 @@
 #include <vector>
 
 #include "livens/base/linear.h"
-#include "livens/multibody/model.h"
+#include "livens/multibody/state.h"
 #include "livens/time/basis.h"
 #include "livens/time/time_mesh.h"
 
 namespace [[gnu::visibility("default")]] livens {
+
+struct Joint;
+struct ReactionInput;
 
 /// A function of time that is a polynomial in every element, or a quotient of two, by its values at that
 /// element's local nodes.
@@ -130,4 +133,4 @@ Reaction joint_reaction(const Joint& joint, const Matrix34& X_second, const Matr
 /// What an input reads of it.
 double number_of(const Reaction& reaction, const ReactionInput& input);
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens

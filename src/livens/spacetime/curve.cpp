@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "livens/multibody/model.h"
 #include "livens/solvers/newton.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/nodal/window.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/multibody/model.h"
 #include "livens/spacetime/march/numbered.h"
 
 namespace livens::inline spacetime_internal {

@@ -14,6 +14,7 @@
 #include "livens/diagnostics/acceptance.h"
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/model.h"
 #include "livens/solvers/crew.h"
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/march/windows.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "livens/multibody/model.h"
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/march/components.h"
 

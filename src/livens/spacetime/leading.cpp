@@ -10,6 +10,7 @@
 
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/model.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/curve.h"
 #include "livens/spacetime/march/components.h"

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "livens/diagnostics/largest.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/march/window_notes.h"
 
 namespace livens::inline spacetime_internal {

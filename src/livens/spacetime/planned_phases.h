@@ -8,7 +8,7 @@
 
 #include "livens/spacetime/march/numbered.h"
 #include "livens/spacetime/march/window.h"
-#include "livens/spacetime/nodal/phases_window.h"
+#include "livens/spacetime/nodal/phase_plan.h"
 
 namespace livens::inline spacetime_internal {
 

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "livens/multibody/model.h"
+#include "livens/base/error.h"
 #include "livens/multibody/motion.h"
 #include "livens/multibody/state_quantities.h"
 
@@ -106,14 +106,16 @@ struct Rebuilt {
     double start = 0, end = 0;           ///< s
     /// At the start, where it is known as a whole; without bodies it is that of the problem.
     State state{};
-    double turn = 0;                ///< rad, of Conditions::turn
-    std::vector<double> output{};   ///< s, in ascending order; empty: those of the problem's time
+    double turn = 0;                      ///< rad, of Conditions::turn
+    std::vector<double> output{};         ///< s, in ascending order; empty: those of the problem's time
+    std::optional<Complaint> refused{};   ///< these values make no model, and nothing else counts
 };
 
 /// As many more conditions by component decide them. Bodies, rows and loads are the same for all values.
 struct UnknownNumbers {
     std::vector<UnknownNumber> numbers{};
-    /// Throws InputError for values that make no model. The problem itself is that of the guesses.
+    /// Values that make no model are to be refused, with InputError::complaint(): others are tried then.
+    /// What it throws ends the solution. The problem itself is that of the guesses.
     std::function<Rebuilt(std::span<const double> values)> rebuild{};
     /// Element ends that stay where they are, whatever numbers do to the ends of time and to switches: s, in
     /// ascending order, inside the time and apart from these.

@@ -11,6 +11,7 @@
 #include "livens/base/text.h"
 #include "livens/diagnostics/diagnostics.h"
 #include "livens/dynamics/rows/tables.h"
+#include "livens/multibody/model.h"
 #include "livens/multibody/state_quantities.h"
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/guess_of_components.h"

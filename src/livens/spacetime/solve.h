@@ -13,6 +13,7 @@
 #include "livens/diagnostics/coordinates.h"
 #include "livens/diagnostics/estimate.h"
 #include "livens/diagnostics/sample.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/options.h"
 #include "livens/spacetime/problem.h"
 

@@ -20,6 +20,7 @@
 #include "livens/spacetime/march/window_notes.h"
 #include "livens/spacetime/march/windows.h"
 #include "livens/spacetime/mixed/window.h"
+#include "livens/spacetime/nodal/phases_window.h"
 #include "livens/spacetime/nodal/unknowns_window.h"
 #include "livens/spacetime/other_motions.h"
 #include "livens/spacetime/phases/events.h"

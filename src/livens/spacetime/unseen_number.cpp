@@ -10,6 +10,7 @@
 
 #include "livens/dynamics/start/consistent_start.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/march/components.h"
 #include "livens/spacetime/planned_phases.h"
@@ -50,11 +51,13 @@ Guess march_through(const Model& model, const State& begin, const TimeMesh& mesh
 }
 
 /// By how much each condition is missed by a march from a state, of the model that these values make, in the
-/// scales of the conditions; empty: there is no such march.
+/// scales of the conditions; empty: there is no such march, or no such model.
 std::vector<double> missed_with(const NumberedProblem& problem, const std::vector<double>& values,
                                 const State& start)
 {
-    const NumberedProblem::Instance made = problem.at(values);
+    const NumberedProblem::Tried tried = problem.try_at(values);
+    if (!tried.made) return {};
+    const NumberedProblem::Instance& made = *tried.made;
     const Model& model = *made.rebuilt.model;
     State begin = made.ends.is_start_known() ? made.ends.start : start;
     begin.t = made.mesh.start();
@@ -84,12 +87,7 @@ std::optional<Complaint> why_unseen(const NumberedProblem& problem)
         const double step = change * std::max(problem.scale(i), std::abs(guesses[i]));
         values[i] = std::min(guesses[i] + step, number.high);
         if (values[i] - guesses[i] < 0.5 * step) values[i] = std::max(guesses[i] - step, number.low);
-        std::vector<double> now;
-        try {
-            now = missed_with(problem, values, start);
-        } catch (const InputError&) {
-            continue;
-        }
+        const std::vector<double> now = missed_with(problem, values, start);
         double largest = now.empty() ? 1 : 0;
         for (std::size_t k = 0; k < now.size(); ++k)
             largest = std::max(largest, std::abs(now[k] - before[k]));

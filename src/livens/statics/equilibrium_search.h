@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "livens/dynamics/instant/instant.h"
+#include "livens/dynamics/rows/tables.h"
 #include "livens/dynamics/start/consistent_start.h"
 #include "livens/solvers/dense_matrix.h"
 #include "livens/statics/resting_stops.h"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "livens/dynamics/start/consistent_start.h"
+#include "livens/multibody/loads.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -114,4 +115,4 @@ struct StateMatrices {
 StateMatrices state_matrices(const Model& model, const Linearisation& linear,
                              const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "livens/dynamics/rows/twist_blocks.h"
+#include "livens/multibody/model.h"
 #include "livens/solvers/dense_matrix.h"
 
 namespace livens::inline statics_internal {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/multibody/model.h"
+
 namespace livens::inline statics_internal {
 
 namespace {

@@ -8,6 +8,7 @@
 #include "livens/base/text.h"
 #include "livens/dynamics/start/consistent_start.h"
 #include "livens/multibody/joints/drives.h"
+#include "livens/multibody/model.h"
 #include "unit/multibody/random_states.h"
 
 namespace livens::assembly_branch_test {

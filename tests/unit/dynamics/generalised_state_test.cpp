@@ -13,6 +13,7 @@
 #include "livens/dynamics/instant/instant.h"
 #include "livens/dynamics/rows/rank.h"
 #include "livens/dynamics/rows/rows.h"
+#include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/joints/drives.h"
 #include "livens/time/time_laws.h"
 #include "unit/dynamics/linkages.h"

@@ -13,6 +13,7 @@
 
 #include "livens/dynamics/rows/twist.h"
 #include "livens/dynamics/start/consistent_start.h"
+#include "livens/multibody/model.h"
 #include "workshop.h"
 
 namespace livens::instant_test {

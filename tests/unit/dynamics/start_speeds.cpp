@@ -9,6 +9,7 @@
 #include "livens/dynamics/start/consistent_start.h"
 #include "livens/multibody/joints/drives.h"
 #include "livens/multibody/loads/load_laws.h"
+#include "livens/multibody/model.h"
 #include "livens/time/time_laws.h"
 
 namespace livens::start_speeds_test {

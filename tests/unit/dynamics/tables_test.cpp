@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tables that the engine reads against the model that they are made of.
 #include "livens/dynamics/rows/tables.h"
+#include "livens/multibody/model.h"
 
 #include <gtest/gtest.h>
 

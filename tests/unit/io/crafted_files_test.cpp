@@ -5,6 +5,7 @@
 
 #include "fuzz/crafted.h"
 #include "livens/io/json.h"
+#include "livens/multibody/model.h"
 #include "unit/io/sample_run.h"
 
 namespace livens::crafted_files_test {

@@ -12,6 +12,7 @@
 
 #include "livens/diagnostics/sample.h"
 #include "livens/io/results.h"
+#include "livens/multibody/model.h"
 #include "sanitized.h"
 #include "unit/io/sample_run.h"
 

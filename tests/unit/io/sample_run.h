@@ -17,6 +17,7 @@
 
 #include "livens/io/results.h"
 #include "livens/io/results/layout.h"
+#include "livens/multibody/model.h"
 
 namespace livens {
 

@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "livens/multibody/model.h"
 #include "livens/time/basis.h"
 #include "livens/time/quadrature.h"
 #include "unit/multibody/random_states.h"

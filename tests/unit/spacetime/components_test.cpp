@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/multibody/model.h"
 #include "livens/spacetime/march/condition_rows.h"
 #include "livens/spacetime/nodal/window.h"
 #include <mechanisms.h>   // of all tests, not of this folder

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "livens/multibody/joints.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/guess.h"
 #include "livens/spacetime/leading.h"
 #include "livens/spacetime/march/window_notes.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Many motions at a time are those of one at a time.
+#include "livens/multibody/model.h"
 #include "livens/spacetime/ensemble.h"
 
 #include <gtest/gtest.h>

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "livens/multibody/loads/load_laws.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens::tests::inside_test {

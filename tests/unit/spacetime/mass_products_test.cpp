@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Products of null spaces at two nodes are those of the mass between them, body by body.
+#include "livens/multibody/model.h"
 #include "livens/spacetime/nodal/mass_products.h"
 
 #include <gtest/gtest.h>

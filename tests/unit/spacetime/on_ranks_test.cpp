@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "livens/base/error.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/on_ranks.h"
 #include "sanitized.h"
 #include <mechanisms.h>   // those of all tests

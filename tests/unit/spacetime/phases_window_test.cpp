@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "livens/spacetime/nodal/phases_window.h"
 #include "livens/spacetime/nodal/unknowns_window.h"
 #include "livens/spacetime/planned_phases.h"
 #include <mechanisms.h>   // of all tests, not of this folder

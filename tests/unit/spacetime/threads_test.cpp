@@ -10,6 +10,7 @@
 
 #include "livens/base/error.h"
 #include "livens/multibody/loads.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/solve.h"
 #include <mechanisms.h>   // those of all tests
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "livens/multibody/model.h"
 #include "livens/spacetime/solve.h"
 
 namespace livens::verdict_test {

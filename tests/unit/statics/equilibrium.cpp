@@ -9,6 +9,7 @@
 
 #include "livens/base/error.h"
 #include "livens/multibody/joints/drives.h"
+#include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 #include "livens/time/time_laws.h"
 

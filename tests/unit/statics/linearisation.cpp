@@ -12,6 +12,7 @@
 #include "livens/base/error.h"
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/model.h"
 #include "livens/statics/equilibrium.h"
 #include "livens/statics/small_motions.h"
 

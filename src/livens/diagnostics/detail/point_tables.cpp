@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "livens/multibody/model.h"
+
 namespace livens::inline diagnostics_internal {
 
 /// A row without a form has the gradient B everywhere, of which the numbers that are not zero are enough.

@@ -9,6 +9,7 @@
 #include "livens/diagnostics/detail/motion_points.h"
 #include "livens/dynamics/lanes/load_lanes.h"
 #include "livens/dynamics/rows/tables.h"
+#include "livens/multibody/model.h"
 
 namespace livens::inline diagnostics_internal {
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "livens/dynamics/start/consistent_start.h"
+#include "livens/multibody/model.h"
 
 namespace [[gnu::visibility("default")]] livens {
 

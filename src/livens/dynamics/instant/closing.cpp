@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "livens/dynamics/instant/instant.h"
+#include "livens/dynamics/rows/tables.h"
 #include "livens/dynamics/rows/twist.h"
 
 namespace livens {

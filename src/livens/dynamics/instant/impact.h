@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "livens/dynamics/instant/settled_instant.h"
+#include "livens/multibody/joints.h"
 
 namespace livens::inline dynamics_internal {
 

@@ -8,6 +8,7 @@
 #include "livens/dynamics/instant/instant.h"
 #include "livens/dynamics/rows/rank.h"
 #include "livens/dynamics/rows/rows.h"
+#include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/loads/load_laws.h"
 #include "livens/multibody/rotors.h"
 

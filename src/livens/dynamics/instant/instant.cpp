@@ -5,7 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/dynamics/rows/tables.h"
 #include "livens/dynamics/rows/twist.h"
+#include "livens/multibody/model.h"
 
 namespace livens {
 

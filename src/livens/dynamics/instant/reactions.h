@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "livens/multibody/model.h"
+#include "livens/multibody/state.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -37,4 +37,4 @@ struct UniqueReactions {
 UniqueReactions least_reactions(const Model& model, std::span<const Matrix34> X,
                                 std::span<const double> multipliers, std::span<const int> independent);
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "livens/dynamics/instant/instant.h"
+#include "livens/dynamics/rows/tables.h"
+#include "livens/multibody/state.h"
 
 namespace livens::inline dynamics_internal {
 

@@ -6,6 +6,7 @@
 
 #include "livens/dynamics/lanes/elimination_order.h"
 #include "livens/dynamics/lanes/row_sums.h"
+#include "livens/multibody/model.h"
 
 namespace livens {
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "livens/multibody/model.h"
+
 namespace livens::inline dynamics_internal {
 
 /// A linear function of the numbers of a configuration.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "livens/dynamics/rows/twist.h"
+#include "livens/multibody/model.h"
 
 namespace livens {
 

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "livens/multibody/model.h"
+#include "livens/multibody/state.h"
 
 namespace livens::inline dynamics_internal {
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/dynamics/rows/tables.h"
+
 namespace livens {
 
 double KnownColumns::take(int row, double* column, int n_twists) const

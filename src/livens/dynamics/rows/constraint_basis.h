@@ -4,10 +4,12 @@
 
 #include <vector>
 
-#include "livens/dynamics/rows/tables.h"
 #include "livens/solvers/dense.h"
+#include "livens/time/time_function.h"
 
 namespace livens::inline dynamics_internal {
+
+struct ModelTables;
 
 /// Columns D^T Ghat^T / s that somebody else has evaluated: of each row its entries, that far apart.
 struct KnownColumns {
@@ -24,8 +26,8 @@ struct KnownColumns {
 
 /// An orthogonal basis of the constraint directions at one configuration, with the scaling of its rows.
 struct ConstraintBasis {
-    OrthogonalBasis q;               ///< of the columns D^T Ghat^T / s
-    std::vector<int> rows;           ///< rank rows of the tables, in the order of the columns
+    OrthogonalBasis q;       ///< of the columns D^T Ghat^T / s
+    std::vector<int> rows;   ///< rank rows of the tables, in the order of the columns
     int longest_gradient = 0;
     std::vector<double> gradients;   ///< so many numbers a row, and its 1 / s, in the same order
 

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <span>
 
+#include "livens/multibody/constraint.h"
 #include "livens/multibody/motion.h"
 
 namespace livens::inline dynamics_internal {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "livens/multibody/model.h"
+
 namespace livens {
 
 namespace {

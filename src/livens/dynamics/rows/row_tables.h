@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include "livens/multibody/model.h"
+#include "livens/multibody/constraint.h"
+#include "livens/multibody/state.h"
 
 namespace livens::inline dynamics_internal {
 

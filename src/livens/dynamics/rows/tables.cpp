@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/multibody/model.h"
+
 namespace livens {
 
 namespace {
@@ -45,6 +47,8 @@ ModelTables::ModelTables(const Model& the_model, std::vector<int> rows_to_solve,
         }
     }
 }
+
+int ModelTables::n_rows() const { return model->n_rows(); }
 
 /// What is no number counts as violated.
 int ModelTables::first_violated_beside(const std::vector<int>& held, Instant at, const double* X,

@@ -43,7 +43,7 @@ struct ModelTables {
     std::shared_ptr<KnownPattern> known_pattern;
 
     int n_bodies() const { return bodies.n_bodies(); }
-    int n_rows() const { return model->n_rows(); }
+    int n_rows() const;   ///< of joints
     int freedoms() const { return n_twists - rank; }
     /// The first row of the joints that is not among these and is off by more than so much of its scale; -1:
     /// there is none.

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "livens/base/error.h"
-#include "livens/multibody/model.h"
+#include "livens/multibody/state.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -47,4 +47,4 @@ struct TriedStart {
 };
 TriedStart try_consistent_start(const Model& model, const State& start, StartPolicy policy);
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens

@@ -9,6 +9,7 @@
 
 #include "livens/dynamics/rows/tables.h"
 #include "livens/dynamics/start/singular.h"
+#include "livens/multibody/model.h"
 
 namespace livens {
 

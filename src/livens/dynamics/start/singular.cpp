@@ -10,6 +10,7 @@
 #include "livens/dynamics/rows/tables.h"
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/model.h"
 #include "livens/solvers/factors.h"
 #include "livens/solvers/noise.h"
 #include "livens/solvers/sparse_rows.h"

@@ -9,6 +9,7 @@
 #include "livens/base/text.h"
 #include "livens/dynamics/start/singular.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/model.h"
 #include "livens/multibody/wording.h"
 
 namespace livens {

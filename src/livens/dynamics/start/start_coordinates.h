@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "livens/dynamics/start/consistent_start.h"
+#include "livens/multibody/model.h"
 
 namespace [[gnu::visibility("default")]] livens {
 
@@ -59,4 +60,4 @@ struct IndependentCoordinates {
 };
 IndependentCoordinates independent_coordinates(const Model& model, const State& state);
 
-}   // namespace gnu::visibility("default")]]livens
+}   // namespace livens

@@ -8,7 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "livens/io/import/urdf_joints.h"
+#include "livens/io/import.h"
+#include "livens/io/import/losses.h"
+#include "livens/io/import/table_maker.h"
+#include "livens/io/import/urdf_file.h"
 
 namespace livens::inline io_internal {
 

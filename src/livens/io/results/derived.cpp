@@ -8,6 +8,7 @@
 #include "livens/diagnostics/sample.h"
 #include "livens/io/json.h"
 #include "livens/io/results/writing.h"
+#include "livens/multibody/model.h"
 #include "livens/solvers/instructions.h"
 
 namespace livens::inline io_internal {

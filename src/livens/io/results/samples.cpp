@@ -14,6 +14,7 @@
 #include "livens/diagnostics/rigidity.h"
 #include "livens/diagnostics/sample.h"
 #include "livens/io/results/writing.h"
+#include "livens/multibody/model.h"
 
 namespace livens::inline io_internal {
 

@@ -10,6 +10,7 @@
 #include "livens/io/results/atomic_file.h"
 #include "livens/io/results/figures.h"
 #include "livens/io/results/writing.h"
+#include "livens/multibody/model.h"
 #include "livens/multibody/unwrapped_angles.h"
 #include "livens/spacetime/solve.h"
 

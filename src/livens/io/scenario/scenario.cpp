@@ -108,7 +108,6 @@ public:
     Rebuilt operator()(std::span<const double> values) const
     {
         Findings findings;
-        Rebuilt rebuilt;
         const Node root = with_numbers(tree_, values);
         AssemblySources sources(files_, findings);
         Assembly assembly(root, "", overrides_, sources);
@@ -152,7 +151,15 @@ UnknownNumbers unknown_numbers(NumberedTree tree, const MeshSource& files,
         number.unit = one.unit.empty() && one.name.starts_with("time.") ? "s" : one.unit;
         unknowns.numbers.push_back(std::move(number));
     }
-    unknowns.rebuild = [rebuilding](std::span<const double> values) { return (*rebuilding)(values); };
+    unknowns.rebuild = [rebuilding](std::span<const double> values) {
+        Rebuilt refused;
+        try {
+            return (*rebuilding)(values);
+        } catch (const InputError& error) {
+            refused.refused = error.complaint();
+        }
+        return refused;
+    };
     return unknowns;
 }
 

@@ -12,6 +12,7 @@
 #include "livens/base/text.h"
 #include "livens/dynamics/start/prepared.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/accuracy/measured_growth.h"
 #include "livens/spacetime/accuracy/reference_solution.h"
 #include "livens/spacetime/accuracy/until_accurate.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "livens/dynamics/rows/tables.h"
+#include "livens/multibody/model.h"
 #include "livens/solvers/patience.h"
 #include "livens/solvers/spectral.h"
 #include "livens/spacetime/accuracy/accuracy.h"

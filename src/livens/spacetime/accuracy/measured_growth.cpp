@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "livens/diagnostics/largest.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/accuracy/reference_solution.h"
 
 namespace livens::inline spacetime_internal {

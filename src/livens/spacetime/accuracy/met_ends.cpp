@@ -8,6 +8,7 @@
 #include "livens/base/text.h"
 #include "livens/diagnostics/estimate.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/march/components.h"
 #include "livens/spacetime/march/ends.h"
 

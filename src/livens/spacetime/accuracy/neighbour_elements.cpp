@@ -9,6 +9,7 @@
 
 #include "livens/dynamics/start/prepared.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/nodal/kernel/kernel_tangent.h"
 
 namespace livens {

@@ -64,6 +64,8 @@ public:
     NeighbourElements(const Model& model, Prepared& prepared, const Method& method, const Ends& closed,
                       const Motion& motion);
 
+    /// Of all bodies.
+    int freedoms() const { return tables_.freedoms(); }
     /// From degree 3 on, rows and inertias that the kernel knows: else neighbours are marched by windows.
     bool serves() const { return serves_; }
     /// A state at the start of the next element that is opened, where `one` is beside the known motion by

@@ -3,6 +3,7 @@
 #include "livens/spacetime/accuracy/until_accurate.h"
 
 #include "livens/base/text.h"
+#include "livens/multibody/model.h"
 
 namespace livens::inline spacetime_internal {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "livens/base/text.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/march/components.h"
 
 namespace livens::inline spacetime_internal {
@@ -96,8 +97,8 @@ std::vector<std::string> unmet_components(const Model& model, const Ends& ends, 
         for (int a = 0; a < motion.X.degree; ++a)
             instants.push_back(motion.mesh.ends[e] + nodes[a] * motion.mesh.length(e));
     instants.push_back(motion.end());
-    const std::vector<double> values = values_in(
-        model, ends, [&](double t) { return motion.at(t); }, instants);
+    const std::vector<double> values =
+        values_in(model, ends, [&](double t) { return motion.at(t); }, instants);
     return unmet_values(model, ends, values, motion.end() - motion.start());
 }
 

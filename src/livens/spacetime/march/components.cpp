@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "livens/base/text.h"
+#include "livens/multibody/model.h"
 #include "livens/solvers/dense.h"
 #include "livens/solvers/factors.h"
 #include "livens/spacetime/march/condition_rows.h"
@@ -123,6 +124,7 @@ private:
         for (const UnknownNumber& number : unknowns.numbers) stated.push_back(number.guess);
         Rebuilt whole;   // with the joints of all of time
         if (!unknowns.is_empty()) whole = unknowns.rebuild(stated);
+        if (whole.refused) throw InputError(std::move(*whole.refused));
         const Model& model = whole.model != nullptr ? *whole.model : *tables_.model;
         const NumberedProblem problem(model, ends_, mesh, unknowns);
         const std::vector<double> guesses = problem.guesses();   // with those of what unfolds it

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "livens/multibody/model.h"
 #include "livens/solvers/dense.h"
 #include "livens/spacetime/march/components.h"
 #include "livens/spacetime/march/condition_rows.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/multibody/model.h"
 #include "livens/spacetime/march/components.h"
 
 namespace livens::inline spacetime_internal {

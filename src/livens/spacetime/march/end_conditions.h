@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "livens/dynamics/rows/tables.h"
 #include "livens/solvers/linear_solver.h"
 #include "livens/spacetime/march/end_point.h"
 #include "livens/spacetime/march/ends.h"

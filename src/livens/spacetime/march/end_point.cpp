@@ -7,7 +7,9 @@
 #include <array>
 #include <cmath>
 
+#include "livens/dynamics/rows/tables.h"
 #include "livens/dynamics/rows/twist.h"
+#include "livens/multibody/model.h"
 
 namespace livens::inline spacetime_internal {
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "livens/dynamics/instant/instant.h"
+#include "livens/multibody/state.h"
 #include "livens/multibody/state_quantities.h"
 #include "livens/solvers/dense_matrix.h"
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "livens/multibody/body.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/march/end_point.h"
 
 namespace livens::inline spacetime_internal {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/multibody/model.h"
 
 namespace livens {
 
@@ -73,31 +73,42 @@ std::vector<double> NumberedProblem::guesses() const
 /// Anchors are found anew in the rebuilt model and paired with those of the stated one by their order, so
 /// there must be as many, and the same of them events of joints. Between two of them the mesh is stretched
 /// ("Unknown numbers", Time).
-NumberedProblem::Instance NumberedProblem::at(std::span<const double> values) const
+NumberedProblem::Tried NumberedProblem::try_at(std::span<const double> values) const
 {
     const auto n = static_cast<std::size_t>(n_stated());
     Instance made{n > 0 ? unknowns_.rebuild(values.first(n)) : as_it_is(), ends_, mesh_};
     const Rebuilt& rebuilt = made.rebuilt;
+    if (rebuilt.refused) return {{}, *rebuilt.refused};
     if (!(rebuilt.end > rebuilt.start))
-        throw InputError({"time-end", "time.end", "the end of time is not after its start",
-                          to_text(rebuilt.end, 6), "> " + to_text(rebuilt.start, 6), "", ""});
+        return {{},
+                {"time-end", "time.end", "the end of time is not after its start", to_text(rebuilt.end, 6),
+                 "> " + to_text(rebuilt.start, 6), "", ""}};
     // any state is the one in which a motion of no length ends
     if (ends_.periodic.n_alike > 0 && rebuilt.end - rebuilt.start < 0.1 * (mesh_.end() - mesh_.start()))
-        throw InputError({"time-end", "time.end", "the period is less than a tenth of its guess",
-                          to_text(rebuilt.end - rebuilt.start, 6), "", "",
-                          "give a better guess of it, or of the state at the start"});
+        return {{},
+                {"time-end", "time.end", "the period is less than a tenth of its guess",
+                 to_text(rebuilt.end - rebuilt.start, 6), "", "",
+                 "give a better guess of it, or of the state at the start"}};
     const Anchors anchors = anchors_of(*rebuilt.model, rebuilt.start, rebuilt.end);
     if (anchors.instants.size() != anchors_.instants.size() || anchors.events != anchors_.events)
-        throw InputError({"unknown-order", "time",
-                          "an instant at which a load or a joint switches leaves the time, or meets another",
-                          "", "", "elements end there, and their order does not change", ""});
+        return {{},
+                {"unknown-order", "time",
+                 "an instant at which a load or a joint switches leaves the time, or meets another", "", "",
+                 "elements end there, and their order does not change", ""}};
     for (auto* instants : {&made.mesh.ends, &made.mesh.required, &made.mesh.bends})
         for (double& t : *instants) t = moved_with(anchors_.instants, t, anchors.instants);
     made.ends.end.t = rebuilt.end;
     if (!rebuilt.state.X.empty()) made.ends.start = rebuilt.state;
     made.ends.start.t = rebuilt.start;
     put_components(rebuilt, values.subspan(n), made.ends.components);
-    return made;
+    return {std::move(made), {}};
+}
+
+NumberedProblem::Instance NumberedProblem::at(std::span<const double> values) const
+{
+    Tried tried = try_at(values);
+    if (!tried.made) throw InputError(std::move(tried.why));
+    return std::move(*tried.made);
 }
 
 /// The model itself, by a pointer that does not own it.

@@ -2,9 +2,11 @@
 // Problems whose models have unknown numbers: what they are for any values of these.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "livens/base/error.h"
 #include "livens/spacetime/march/ends.h"
 
 namespace livens::inline spacetime_internal {
@@ -22,7 +24,13 @@ public:
         Ends ends;
         TimeMesh mesh;
     };
-    /// Throws InputError.
+    /// None: `why` says why these values make no problem.
+    struct Tried {
+        std::optional<Instance> made;
+        Complaint why;
+    };
+    Tried try_at(std::span<const double> values) const;
+    /// Throws InputError instead.
     Instance at(std::span<const double> values) const;
 
     int size() const { return static_cast<int>(numbers_.size()); }

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "livens/diagnostics/estimate.h"
-#include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 #include "livens/solvers/newton.h"
 #include "livens/solvers/report.h"

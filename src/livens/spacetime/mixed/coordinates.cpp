@@ -11,6 +11,7 @@
 
 #include "livens/base/error.h"
 #include "livens/multibody/mass_properties.h"
+#include "livens/multibody/model.h"
 #include "livens/solvers/dense.h"
 #include "livens/solvers/dense_matrix.h"
 #include "livens/solvers/sparse.h"

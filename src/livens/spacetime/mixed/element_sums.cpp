@@ -4,6 +4,8 @@
 // and tangents of loads are summed number by number (docs/theory.md, "The elements of the paper").
 #include "livens/spacetime/mixed/element_sums.h"
 
+#include "livens/multibody/model.h"
+
 namespace livens::mixed {
 
 /// A block of 12 x 12 for each body that a load acts on and each that it depends on; likewise of rows that

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "livens/base/linear.h"
-#include "livens/multibody/model.h"
+#include "livens/multibody/body.h"
+#include "livens/multibody/state.h"
 
 namespace livens::mixed {
 

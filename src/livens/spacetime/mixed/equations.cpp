@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/multibody/model.h"
 #include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "livens/multibody/model.h"
 #include "livens/solvers/crew.h"
 
 namespace livens::mixed {

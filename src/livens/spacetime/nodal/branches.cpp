@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "livens/multibody/model.h"
 #include "livens/spacetime/nodal/nodes.h"
 
 namespace livens {

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "livens/diagnostics/largest.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/march/step_size_controller.h"
 #include "livens/spacetime/nodal/element_end.h"
 #include "livens/spacetime/nodal/system.h"

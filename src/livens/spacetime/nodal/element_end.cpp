@@ -9,6 +9,7 @@
 
 #include "livens/base/text.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/model.h"
 #include "livens/solvers/crew.h"
 #include "livens/spacetime/nodal/kernel/march_kernel.h"
 #include "livens/spacetime/nodal/system.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "livens/dynamics/instant/instant.h"
+#include "livens/multibody/state.h"
 
 namespace livens::inline spacetime_internal {
 

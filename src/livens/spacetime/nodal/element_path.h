@@ -5,9 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "livens/dynamics/rows/tables.h"
 #include "livens/spacetime/elements/window_layout.h"
 #include "livens/time/basis.h"
+
+namespace livens::inline dynamics_internal {
+struct ModelTables;
+}   // namespace livens::inline dynamics_internal
 
 namespace livens::inline spacetime_internal {
 

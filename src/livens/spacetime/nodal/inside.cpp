@@ -10,6 +10,7 @@
 
 #include "livens/diagnostics/largest.h"
 #include "livens/dynamics/instant/instant.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/nodal/nodes.h"
 
 namespace livens {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "livens/base/error.h"
 #include "livens/spacetime/phases/events.h"
 
 namespace livens::inline spacetime_internal {
@@ -41,8 +40,9 @@ Ends ends_of(const PhasePlan::Phase& plan, const TimeMesh& mesh)
 WindowPhase::WindowPhase(const Model& model, const TimeMesh& whole, const PhasePlan::Phase& plan,
                          const ElementRule& rule)
     : acting(acting_at(model, 0.5 * (whole.ends[plan.first] + whole.ends[plan.last]))),
-      mesh(stretch_of(whole, plan.first, plan.last)), ends(ends_of(plan, mesh)),
-      tables(acting.model, plan.independent), window(tables, mesh, ends, rule)
+      is_planned(acting.joints == plan.joints), mesh(stretch_of(whole, plan.first, plan.last)),
+      ends(ends_of(plan, mesh)), tables(acting.model, is_planned ? plan.independent : std::vector<int>()),
+      window(tables, mesh, ends, rule)
 {}
 
 PhasesWindow::PhasesWindow(std::shared_ptr<const Model> model, const TimeMesh& mesh, const Ends& ends,
@@ -51,24 +51,27 @@ PhasesWindow::PhasesWindow(std::shared_ptr<const Model> model, const TimeMesh& m
 {
     for (const PhasePlan::Phase& of : plan.phases) {
         phases_.push_back(std::make_unique<Phase>(*model_, mesh_, of, rule));
-        if (phases_.back()->acting.joints != of.joints)
-            throw InputError({"unknown-order", "time", "joints begin or end to act in another order", "", "",
-                              "each phase keeps its joints, whatever numbers are tried", ""});
+        if (!phases_.back()->is_planned) return;
         if (!look_at_laws) phases_.back()->window.ignore_laws();
     }
     missed_ = std::make_unique<MissedConditions>(phases_.back()->tables, ends_);
     for (const Body& body : model_->bodies()) stated_.push_back(body.X);
     if (!ends_.is_start_known()) return;
     EndPoint start(phases_.front()->tables);
-    if (!start.place(ends_.start))
-        throw InputError({"start-position", "start", "the joints cannot hold the bodies where they start", "",
-                          "", "", ""});
+    if (!start.place(ends_.start)) return;
     start_momenta_ = start.momenta();
     for (const Matrix34& X : start.state().X) start_X_.insert(start_X_.end(), std::begin(X.a), std::end(X.a));
 }
 
 bool PhasesWindow::open(int, int, SolveReport& report)
 {
+    const bool is_planned = phases_.back()->is_planned;
+    if (!is_planned || (ends_.is_start_known() && start_momenta_.empty())) {
+        report.status = SolveStatus::singular;
+        report.message = is_planned ? "the joints cannot hold the bodies where they start"
+                                    : "joints begin or end to act in another order";
+        return false;
+    }
     return std::ranges::all_of(
         phases_, [&](const auto& phase) { return phase->window.open(0, phase->mesh.n_elements(), report); });
 }

@@ -9,20 +9,10 @@
 #include "livens/multibody/model.h"
 #include "livens/solvers/dense.h"
 #include "livens/spacetime/march/condition_rows.h"
+#include "livens/spacetime/nodal/phase_plan.h"
 #include "livens/spacetime/nodal/window.h"
 
 namespace livens::inline spacetime_internal {
-
-/// What phases are alike for all values of unknown numbers.
-struct PhasePlan {
-    struct Phase {
-        int first = 0, last = 0;        ///< element ends
-        std::vector<int> joints;        ///< that act
-        std::vector<int> independent;   ///< rows of these
-        State start;                    ///< a guess, with angles of loads
-    };
-    std::vector<Phase> phases;
-};
 
 /// Elements of a phase with its joints.
 struct WindowPhase {
@@ -35,6 +25,7 @@ struct WindowPhase {
     int last_node() const { return window.equations().layout().n_nodes() - 1; }
 
     ActingModel acting;
+    bool is_planned;   ///< the joints that act are those of the plan
     TimeMesh mesh;
     Ends ends;
     ModelTables tables;
@@ -58,7 +49,8 @@ struct PhaseResponse {
 /// to be found are the nodes inside, the start if it is not known, and numbers.
 class PhasesWindow final : public BorderedWindow, private ElementMonitor, private NewtonProblem {
 public:
-    /// The plan must outlive it. Throws InputError: in other phases other joints act.
+    /// The plan must outlive it. Where in one of its phases other joints act, or the start does not close, it
+    /// does not open.
     PhasesWindow(std::shared_ptr<const Model> model, const TimeMesh& mesh, const Ends& ends,
                  const PhasePlan& plan, const ElementRule& rule, bool look_at_laws);
 

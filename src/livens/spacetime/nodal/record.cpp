@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "livens/dynamics/instant/instant.h"
+#include "livens/multibody/model.h"
 
 namespace livens {
 

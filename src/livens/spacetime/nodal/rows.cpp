@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "livens/dynamics/instant/instant.h"
+#include "livens/multibody/model.h"
 #include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 #include "livens/solvers/row_functions.h"
@@ -39,9 +40,8 @@ void NodalRows::open(const WindowLayout& layout)
     for (int A = 0; A < layout.n_nodes(); ++A) n_active += layout.is_active(A) ? 1 : 0;
     if (const std::size_t n = layout.n_nodes() * size_of_node_; raw_.size() != n) {
         raw_.resize(n);
-        for_each_item(layout.n_nodes(), least_shared, [&](int A) {
-            std::fill_n(raw_.begin() + A * size_of_node_, size_of_node_, 0.0);
-        });
+        for_each_item(layout.n_nodes(), least_shared,
+                      [&](int A) { std::fill_n(raw_.begin() + A * size_of_node_, size_of_node_, 0.0); });
     }
     are_finite_.resize(static_cast<std::size_t>(layout.n_nodes()));
     impulses_.resize(layout.n_nodes() * tables_.rank);

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "livens/base/error.h"
 #include "livens/base/text.h"
+#include "livens/multibody/model.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/nodal/window.h"
 
@@ -29,11 +29,6 @@ UnknownsWindow::Maker nodal_windows(const ElementRule& rule, bool look_at_laws)
     };
 }
 
-UnknownsWindow::Instance::Instance(const NumberedProblem& problem, const std::vector<double>& of_numbers,
-                                   const Maker& maker)
-    : values(of_numbers), of(problem.at(values)), window(maker(of))
-{}
-
 UnknownsWindow::UnknownsWindow(const NumberedProblem& problem, const std::vector<double>& begin, Maker maker,
                                FoundNumbers& found)
     : Window(static_cast<ElementMonitor&>(*this)), problem_(problem), begin_(begin), maker_(std::move(maker)),
@@ -46,13 +41,15 @@ UnknownsWindow::UnknownsWindow(const NumberedProblem& problem, const std::vector
 UnknownsWindow::Shared UnknownsWindow::make(const std::vector<double>& values)
 {
     Patience::ask();
-    try {
-        auto made = std::make_shared<Instance>(problem_, values, maker_);
+    NumberedProblem::Tried tried = problem_.try_at(values);
+    if (tried.made) {
+        auto made = std::make_shared<Instance>(Instance{values, std::move(*tried.made), nullptr});
+        made->window = maker_(made->of);
         SolveReport report;
         if (made->window->open(first_, last_, report)) return made;
         why_ = report.message;
-    } catch (const InputError& error) {
-        why_ = error.complaint().message;
+    } else {
+        why_ = tried.why.message;
     }
     for (int i = 0; i < problem_.size(); ++i)
         why_ += std::string(i == 0 ? " where '" : ", '") + problem_[i].name + "' is " + to_text(values[i], 6);

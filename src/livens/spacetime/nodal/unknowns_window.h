@@ -21,7 +21,7 @@ std::function<std::shared_ptr<BorderedWindow>(const NumberedProblem::Instance&)>
 /// differences of rows of rebuilt models, with nodes that are pulled onto the joints of these.
 class UnknownsWindow final : public Window, private ElementMonitor, private NewtonProblem {
 public:
-    /// The window of a problem with some values, with what it is made of. Throws InputError.
+    /// The window of a problem with some values, with what it is made of.
     using Maker = std::function<std::shared_ptr<BorderedWindow>(const NumberedProblem::Instance&)>;
     /// References must outlive it; `begin`: values to begin with, of stated numbers at least. What is found
     /// goes into `found`.
@@ -44,8 +44,6 @@ public:
 
 private:
     struct Instance {
-        Instance(const NumberedProblem& problem, const std::vector<double>& values, const Maker& maker);
-
         std::vector<double> values;
         NumberedProblem::Instance of;
         std::shared_ptr<BorderedWindow> window;

@@ -10,6 +10,7 @@
 #include "livens/base/text.h"
 #include "livens/dynamics/rows/twist.h"
 #include "livens/multibody/body.h"
+#include "livens/multibody/model.h"
 #include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/nodal/elimination.h"
@@ -21,8 +22,7 @@ NodalWindow::NodalWindow(const ModelTables& tables, const TimeMesh& mesh, const 
     : BorderedWindow(static_cast<ElementMonitor&>(*this)), tables_(tables), ends_(ends),
       conditions_(ends.has_components() ? std::make_unique<EndConditions>(tables, ends) : nullptr),
       system_(tables, rule), series_(tables, system_.rule()), kernel_(tables, system_.rule()),
-      end_(tables, is_sparse()), checks_(tables, system_.rule()),
-      record_(tables, mesh, system_.rule())
+      end_(tables, is_sparse()), checks_(tables, system_.rule()), record_(tables, mesh, system_.rule())
 {
     record_.note_redundant(ends.redundant);
     if (conditions_ != nullptr) system_.close_with(*conditions_);

@@ -78,6 +78,7 @@ void check_decided(const Model& model, const Problem& problem, const Method& met
     // Reactions that are not unique are refused before anything is solved, and what is no number.
     std::vector<bool> none(model.events().size(), false);
     const EventWatch watch(model, acting_at(model, given.start.t), std::move(none), given.start);
+    if (watch.refusal()) throw InputError(*watch.refusal());
     for (int e = 0; e < static_cast<int>(model.events().size()); ++e) {
         const Event& event = model.events()[static_cast<std::size_t>(e)];
         if (!event.terms.reactions.empty() || watch.is_number_at(e, watch.start())) continue;

@@ -10,7 +10,6 @@
 #include <string>
 #include <utility>
 
-#include "livens/base/error.h"
 #include "livens/base/text.h"
 #include "livens/dynamics/instant/reactions.h"
 
@@ -35,8 +34,9 @@ std::vector<double> numbers_of(const std::vector<Matrix34>& all)
     return numbers;
 }
 
-void refuse_shared(const Model& model, const ActingModel& acting, const ModelTables& tables,
-                   const Event& event, const State& start)
+/// Of reactions that an event asks for: why one of them is not unique.
+std::optional<Complaint> why_shared(const Model& model, const ActingModel& acting, const ModelTables& tables,
+                                    const Event& event, const State& start)
 {
     const Model now = frozen(acting.model, {start.t});
     const std::vector<double> none(static_cast<std::size_t>(now.n_rows()), 0.0);
@@ -45,14 +45,18 @@ void refuse_shared(const Model& model, const ActingModel& acting, const ModelTab
         const auto at = std::ranges::find(acting.joints, input.joint);
         const auto j = static_cast<std::size_t>(at - acting.joints.begin());
         if (at == acting.joints.end() || found.joint_is_unique[j]) continue;
-        throw InputError(
-            {"event-reaction", "event[" + event.name + "]",
-             "'" + event.name + "' asks for a reaction of joint '" + model.joints()[input.joint].name +
-                 "' that is not unique: other joints could carry " + livens::in_words(found.shared[j]),
-             "", "", "bodies are held more often than they need to be",
-             "let joints hold what they must and no more, as a spherical joint in place of a "
-             "revolute one"});
+        return Complaint{
+            "event-reaction",
+            "event[" + event.name + "]",
+            "'" + event.name + "' asks for a reaction of joint '" + model.joints()[input.joint].name +
+                "' that is not unique: other joints could carry " + livens::in_words(found.shared[j]),
+            "",
+            "",
+            "bodies are held more often than they need to be",
+            "let joints hold what they must and no more, as a spherical joint in place of a "
+            "revolute one"};
     }
+    return {};
 }
 
 }   // namespace
@@ -128,7 +132,7 @@ void EventWatch::take(const std::vector<double>& slacks)
 std::function<void(const LoadArguments&, std::span<double>)> EventWatch::reactions_of(const Event& event)
 {
     if (event.terms.reactions.empty()) return {};
-    refuse_shared(whole_, acting_, mechanism_->tables(), event, start_);
+    if (!refusal_) refusal_ = why_shared(whole_, acting_, mechanism_->tables(), event, start_);
     std::vector<ReactionInput> inputs = event.terms.reactions;
     const std::size_t n_counted = UnwrappedAngles(acting_.model).size();
     return [mechanism = mechanism_, model = mechanism_model_, joints = acting_.joints, inputs,

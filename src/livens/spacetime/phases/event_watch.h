@@ -4,10 +4,13 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "livens/base/error.h"
 #include "livens/dynamics/instant/settled_instant.h"
+#include "livens/dynamics/rows/load_tables.h"
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 
@@ -22,14 +25,16 @@ double rounding_of_stop(const Model& model, const Event& event);
 class EventWatch {
 public:
     /// `armed`: of each event of the model, whether something would happen. `start`: of the phase; what its
-    /// angles lack of those that events count has not turned yet. Throws InputError `event-reaction` for a
-    /// reaction that is not unique there. `slacks`: of open stops, how many times what rounding has beyond
-    /// them is not looked at; empty: once.
+    /// angles lack of those that events count has not turned yet. `slacks`: of open stops, how many times
+    /// what rounding has beyond them is not looked at; empty: once.
     EventWatch(const Model& model, ActingModel acting, std::vector<bool> armed, const State& start,
                const std::vector<double>& slacks = {});
 
     /// For another phase with the same joints and armed events, which ask for no reactions.
     void begin_again(const State& start, const std::vector<double>& slacks);
+
+    /// `event-reaction`: one asks for a reaction that is not unique there, and nothing may be watched.
+    const std::optional<Complaint>& refusal() const { return refusal_; }
 
     /// With the loads that watch, which come last.
     const Model& model() const { return acting_.model; }
@@ -82,6 +87,7 @@ private:
     int first_watch_;   // among the loads
     std::shared_ptr<const Model> mechanism_model_;
     std::shared_ptr<SettledInstant> mechanism_;   // null: nothing asks for reactions
+    std::optional<Complaint> refusal_;
     std::unique_ptr<LoadTables> loads_;
     std::shared_ptr<std::vector<double>> slack_;   // of each event: it is looked for so far behind its border
     int lost_ = -1;

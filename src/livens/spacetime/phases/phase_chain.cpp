@@ -154,18 +154,15 @@ private:
     /// False: reactions are not unique any more, and the report says so.
     bool begin(Way& at, double last, Solution& whole) const
     {
-        try {
-            do at.model.begin(at.decisions, at.first, last, at.problem.conditions.start, at.slack);
-            while (at.model.watch() != nullptr && release_stops(at, *at.model.watch(), whole));
-            return true;
-        } catch (const InputError& error) {
-            if (at.first == known_.front()) throw;
-            whole.report.status = SolveStatus::not_converged;
-            whole.report.failed_at = at.first;
-            whole.report.message = "at " + to_text(at.first, 6) + " s " + error.complaint().message +
-                                   "; try: " + error.complaint().help;
-            return false;
-        }
+        std::optional<Complaint> why;
+        do why = at.model.begin(at.decisions, at.first, last, at.problem.conditions.start, at.slack);
+        while (!why && at.model.watch() != nullptr && release_stops(at, *at.model.watch(), whole));
+        if (!why) return true;
+        if (at.first == known_.front()) throw InputError(std::move(*why));
+        whole.report.status = SolveStatus::not_converged;
+        whole.report.failed_at = at.first;
+        whole.report.message = "at " + to_text(at.first, 6) + " s " + why->message + "; try: " + why->help;
+        return false;
     }
 
     /// Stops that would have to pull where a phase begins: false, there is none.

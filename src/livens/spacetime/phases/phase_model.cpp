@@ -14,8 +14,8 @@ const Model& PhaseModel::decided(const Decisions& decisions)
 }
 
 /// What watches is kept while the same joints act and nothing was decided: bounces change neither.
-void PhaseModel::begin(const Decisions& decisions, double first, double last, const State& start,
-                       const std::vector<double>& slack)
+std::optional<Complaint> PhaseModel::begin(const Decisions& decisions, double first, double last,
+                                           const State& start, const std::vector<double>& slack)
 {
     const Model& model = decided(decisions);
     const double middle = 0.5 * (first + last);
@@ -25,7 +25,7 @@ void PhaseModel::begin(const Decisions& decisions, double first, double last, co
     // Which reactions are unique is asked for where a phase begins.
     if (acting_by_ == decisions.changes() && joints == joints_ && !reads_reactions_) {
         if (watch_ != nullptr) watch_->begin_again(start, slack);
-        return;
+        return {};
     }
     watch_.reset();
     acting_by_ = -1;   // until all of it is there
@@ -39,9 +39,11 @@ void PhaseModel::begin(const Decisions& decisions, double first, double last, co
             reads_reactions_ = reads_reactions_ || (armed.back() && !event.terms.reactions.empty());
         }
         watch_ = std::make_unique<EventWatch>(stated_, std::move(acting_), std::move(armed), start, slack);
+        if (watch_->refusal()) return watch_->refusal();
     }
     joints_ = std::move(joints);
     acting_by_ = decisions.changes();
+    return {};
 }
 
 }   // namespace livens::inline spacetime_internal

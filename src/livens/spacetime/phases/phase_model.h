@@ -19,9 +19,9 @@ public:
 
     /// As far as it is decided.
     const Model& decided(const Decisions& decisions);
-    /// For a phase. `slack`: as EventWatch has it, which throws InputError.
-    void begin(const Decisions& decisions, double first, double last, const State& start,
-               const std::vector<double>& slack);
+    /// For a phase. `slack`: as EventWatch has it, which may refuse; then none has begun.
+    std::optional<Complaint> begin(const Decisions& decisions, double first, double last, const State& start,
+                                   const std::vector<double>& slack);
     /// Null: the model has no events.
     EventWatch* watch() { return watch_.get(); }
     /// With the loads that watch.

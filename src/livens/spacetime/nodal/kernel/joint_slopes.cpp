@@ -10,6 +10,7 @@
 
 #include "livens/dynamics/rows/twist.h"
 #include "livens/dynamics/rows/twist_blocks.h"
+#include "livens/multibody/model.h"
 
 namespace livens {
 

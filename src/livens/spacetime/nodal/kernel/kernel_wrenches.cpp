@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "livens/dynamics/instant/instant.h"
+#include "livens/multibody/model.h"
 
 namespace livens {
 

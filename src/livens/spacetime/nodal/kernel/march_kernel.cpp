@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "livens/dynamics/instant/instant.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/nodal/kernel/kernel_tangent.h"
 
 namespace livens {

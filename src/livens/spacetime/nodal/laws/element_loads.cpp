@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "livens/multibody/model.h"
 #include "livens/solvers/crew.h"
 #include "livens/spacetime/elements/kernel_functions.h"
 #include "livens/spacetime/nodal/nodes.h"

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <utility>
 
+#include "livens/dynamics/rows/tables.h"
+#include "livens/multibody/model.h"
 #include "livens/spacetime/nodal/laws/looks_in_lanes.h"
 
 namespace livens::inline spacetime_internal {

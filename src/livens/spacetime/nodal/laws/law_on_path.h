@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "livens/multibody/loads.h"
 #include "livens/spacetime/nodal/element_path.h"
 
 namespace livens::inline spacetime_internal {

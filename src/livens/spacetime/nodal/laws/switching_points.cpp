@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "livens/multibody/model.h"
 #include "livens/spacetime/nodal/nodes.h"
 
 namespace livens {
@@ -283,6 +284,11 @@ Passage Search::first(const std::vector<double>& angles)
 }
 
 }   // namespace
+
+std::string SwitchingPoints::jumping_load() const
+{
+    return jumping_ < 0 ? "" : tables_.model->loads()[jumping_].name;
+}
 
 SwitchingPoints::SwitchingPoints(const ModelTables& tables, const ElementRule& rule, const CalmLaws& calm)
     : tables_(tables), rule_(rule), calm_(calm), path_(tables, rule)

@@ -26,7 +26,7 @@ public:
     /// laws are on other pieces than just behind its start; infinite: none.
     double first(const WindowLayout& layout, const NodePositions& nodes, double until);
     /// The load whose force jumped there, when a bend was found last; empty: none was, or none jumps.
-    std::string jumping_load() const { return jumping_ < 0 ? "" : tables_.model->loads()[jumping_].name; }
+    std::string jumping_load() const;
 
 private:
     bool is_calm(const WatchedLaw& law) const;

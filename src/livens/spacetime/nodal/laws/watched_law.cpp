@@ -6,6 +6,9 @@
 
 #include <algorithm>
 
+#include "livens/dynamics/rows/tables.h"
+#include "livens/multibody/model.h"
+
 namespace livens {
 
 /// Of a load, or, where that is negative, of a row, whose one guard follows a function of its coordinates.

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "livens/multibody/loads.h"
 #include "livens/spacetime/nodal/element_path.h"
 
 namespace livens::inline spacetime_internal {
