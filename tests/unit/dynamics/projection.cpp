@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "linkages.h"
+#include "livens/dynamics/instant/nearest_rates.h"
 #include "livens/dynamics/rows/projection.h"
 #include "livens/dynamics/start/consistent_start.h"
 #include "violations.h"
@@ -61,6 +62,36 @@ TEST(Projection, ReachesRoundingAtAnyRatioOfMasses)
     }
     EXPECT_LT(values, 2e-14);
     EXPECT_LT(rates, 1e-13);
+}
+
+/// By the momentum that an instant has, and by a basis of the rows.
+TEST(Projection, RatesOfManyStatesAreThoseOfEach)
+{
+    double apart = 0, moved = 0;
+    for (unsigned seed = 0; seed < 60; ++seed) {
+        const int n = 2 + static_cast<int>(seed % 7);
+        for (const int kind : {0, 1, 2}) {
+            const Surroundings how{.shift = 10.0 * (seed % 2), .reference = 0.3, .largest_power = 1};
+            const Model model = kind == 2   ? ring(seed, n + 4, how, false)
+                                : kind == 1 ? ring(seed, n, how, true)
+                                            : open_chain(seed, n, how);
+            const ConsistentStart at = consistent_start(model, model.start(), StartPolicy::project);
+            NearestRates many(model, at.independent);
+            Random random(seed);
+            for (int k = 0; k < 3; ++k) {
+                std::vector<Matrix34> rigid;
+                for (const Matrix34& X : at.start.X) rigid.push_back(rate(X, random.vector(), random.vector()));
+                const auto one = nearest_rates(model, at.start.X, rigid, at.independent),
+                           other = many.at(0, at.start.X, rigid);
+                for (std::size_t b = 0; b < one.size(); ++b) {
+                    apart = std::max(apart, norm(one[b] - other[b]));
+                    moved = std::max(moved, norm(one[b] - rigid[b]));
+                }
+            }
+        }
+    }
+    EXPECT_LT(apart, 1e-11);
+    EXPECT_GT(moved, 1);   // a negative control: joints take something off
 }
 
 TEST(Projection, SharesVelocitiesByMassAtAnyRatioOfMasses)

@@ -43,7 +43,7 @@ TEST(Perturbations, RoundingOfAHeavyBodyDoesNotBendWhatHoldsIt)
     kicks[2].shift = {1, 0, 0};   // along the row
     const double factor = 1e-9;
     const auto size = [&](bool are_roundings) {
-        return Difference(beside(model, state, kicks, factor, rows, are_roundings), state, 1)
+        return Difference(KickedStates(model, rows).beside(state, kicks, factor, are_roundings), state, 1)
             .size_of_places(model);
     };
     EXPECT_LT(size(true), 3 * factor);

@@ -65,7 +65,7 @@ bool begins_as_motion(const Surroundings& at)
 }   // namespace
 
 Neighbours::Neighbours(const Surroundings& at, double most_left)
-    : at_(at), is_careful_(at.is_careful),
+    : at_(at), kicked_(at.model, at.rows()), is_careful_(at.is_careful),
       most_alone_(begins_as_motion(at)
                       ? std::min(most_of_one, std::sqrt(share_of_one * beside_one.small / most_left))
                       : 0),
@@ -75,7 +75,8 @@ Neighbours::Neighbours(const Surroundings& at, double most_left)
         elements_.emplace(at.model, *at.prepared, at.method, *at.closed, at.motion);
     if (elements_ && !elements_->serves()) elements_.reset();
     // what the iteration of the motion left is in the difference, too
-    is_careful_ = is_careful_ || !elements_ || most_left > least_share_at_first * near_.small;
+    is_careful_ = is_careful_ || !elements_ || elements_->freedoms() == 1 ||
+                  most_left > least_share_at_first * near_.small;
     if (!is_careful_) near_ = beside_at_first;
 }
 
@@ -111,8 +112,8 @@ void Neighbours::add(const Kicks& kicks, double factor)
     Perturbed one(neighbour(), neighbour());
     one.so_far = 1 / factor;
     for (int k = 0; k < (has_two_ ? 2 : 1); ++k)
-        one.starts[k] = beside(at_.model, motion().at_end(0), kicks, k == 0 ? factor : -factor, at_.rows(),
-                               roundings_ != nullptr);
+        one.starts[k] =
+            kicked_.beside(motion().at_end(0), kicks, k == 0 ? factor : -factor, roundings_ != nullptr);
     all_.push_back(std::move(one));
 }
 
@@ -292,9 +293,9 @@ int Neighbours::record(int first, int last)
 }
 
 /// As a difference of states, off the joints by what bends.
-Difference Neighbours::kicked(const State& here, const Kicks& kicks, double factor) const
+Difference Neighbours::kicked(const State& here, const Kicks& kicks, double factor)
 {
-    return {beside(at_.model, here, kicks, factor, at_.rows(), true), here, 1};
+    return {kicked_.beside(here, kicks, factor, true), here, 1};
 }
 
 /// What elements round on the way is added to what rounding has grown to: of n of them sqrt(n) times it.

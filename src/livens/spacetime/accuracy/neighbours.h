@@ -92,10 +92,11 @@ private:
     void judge_way(Perturbed& one, double width);
     bool wants_other_side() const;
     int record(int first, int last);
-    Difference kicked(const State& here, const Kicks& kicks, double factor) const;
+    Difference kicked(const State& here, const Kicks& kicks, double factor);
     void bring_near(int first, int end);
 
     const Surroundings& at_;
+    KickedStates kicked_;
     Roundings* roundings_ = nullptr;              // that are added on the way
     std::optional<NeighbourElements> elements_;   // empty: neighbours go by windows
     bool is_careful_;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <utility>
 
 #include "livens/diagnostics/largest.h"
 #include "livens/dynamics/rows/projection.h"
@@ -95,6 +95,19 @@ std::array<Vector3, n_perturbations> within(const std::array<bool, 3>& allowed, 
     return e;
 }
 
+/// The joints of a model between bodies of one mass.
+Model with_masses_alike(const Model& model)
+{
+    Model alike(model.gravity());
+    for (Body body : model.bodies()) {
+        const double mass = body.mass(0, 0);
+        if (mass > 0) body.mass *= 1 / mass;
+        alike.add_body(std::move(body));
+    }
+    for (const Joint& joint : model.joints()) alike.add_joint(joint);
+    return alike;
+}
+
 /// In lengths and rad; of bodies that are matter.
 double widest(const Model& model, std::span<const Matrix34> difference)
 {
@@ -179,23 +192,34 @@ double size_of(const Model& model, const Kicks& kicks, double rate)
     return size;
 }
 
-State beside(const Model& model, const State& state, const Kicks& kicks, double factor,
-             std::span<const int> rows, bool are_roundings)
+/// What rows allow of moves.
+std::vector<Matrix34> KickedStates::allowed(const State& at, const std::vector<Matrix34>& moves,
+                                            bool are_roundings)
+{
+    if (model_.has_drives()) {
+        const Model still = frozen(model_, {at.t});
+        return are_roundings ? nearest_if_alike(still, at.X, moves, rows_)
+                             : nearest_rates(still, at.X, moves, rows_);
+    }
+    if (!are_roundings) return (own_ ? *own_ : own_.emplace(model_, rows_)).at(at.t, at.X, moves);
+    if (!alike_) {
+        alike_model_ = with_masses_alike(model_);
+        alike_.emplace(*alike_model_, rows_);
+    }
+    return alike_->at(at.t, at.X, moves);
+}
+
+State KickedStates::beside(const State& state, const Kicks& kicks, double factor, bool are_roundings)
 {
     std::vector<Matrix34> moves;
     for (std::size_t b = 0; b < kicks.size(); ++b)
-        moves.push_back(model.bodies()[b].is_point ? configuration(kicks[b].shift, Matrix3{})
-                                                   : rate(state.X[b], kicks[b].shift, kicks[b].turn));
-    std::optional<Model> without_drives;
-    if (model.has_drives()) without_drives = frozen(model, {state.t});
-    const Model& still = without_drives ? *without_drives : model;
-    if (!rows.empty())
-        moves = (are_roundings ? nearest_if_alike(still, state.X, moves, rows)
-                               : nearest_rates(still, state.X, moves, rows));
+        moves.push_back(model_.bodies()[b].is_point ? configuration(kicks[b].shift, Matrix3{})
+                                                    : rate(state.X[b], kicks[b].shift, kicks[b].turn));
+    if (!rows_.empty()) moves = allowed(state, moves, are_roundings);
     State s = state;
     for (std::size_t b = 0; b < kicks.size(); ++b) {
         const Vector3 step = factor * moves[b].column(0), faster = factor * kicks[b].push;
-        if (model.bodies()[b].is_point) {
+        if (model_.bodies()[b].is_point) {
             s.X[b] = configuration(state.X[b].column(0) + step, Matrix3{});
             s.V[b] = configuration(state.V[b].column(0) + faster, Matrix3{});
             continue;
@@ -206,7 +230,10 @@ State beside(const Model& model, const State& state, const Kicks& kicks, double 
         const Vector3 turned = directors(s.X[b]) * (transpose(directors(state.X[b])) * spin);
         s.V[b] = rate(s.X[b], state.V[b].column(0) + faster, turned + factor * kicks[b].spin);
     }
-    if (!rows.empty()) s.V = nearest_rates(still, s.X, s.V, rows, drive_rates(model, {state.t}, s.X));
+    if (rows_.empty()) return s;
+    s.V = model_.has_drives()
+              ? nearest_rates(frozen(model_, {state.t}), s.X, s.V, rows_, drive_rates(model_, {state.t}, s.X))
+              : allowed(s, s.V, false);
     return s;
 }
 

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "livens/diagnostics/acceptance.h"
+#include "livens/dynamics/instant/nearest_rates.h"
 #include "livens/multibody/model.h"
 #include "livens/multibody/motion.h"
 #include "livens/solvers/noise.h"
@@ -50,10 +52,26 @@ private:
 /// In lengths and rad, velocities as they would be after a time of 1 / rate.
 double size_of(const Model& model, const Kicks& kicks, double rate);
 
-/// The state with these kicks times a factor: off the given independent rows, in places and in rates, by no
-/// more than what bends. Without rows as it is.
-State beside(const Model& model, const State& state, const Kicks& kicks, double factor,
-             std::span<const int> rows, bool are_roundings = false);
+/// States beside others of one model.
+class KickedStates {
+public:
+    /// `rows`: independent ones, or none. The model must outlive it.
+    KickedStates(const Model& model, std::span<const int> rows)
+        : model_(model), rows_(rows.begin(), rows.end())
+    {}
+
+    /// The state with these kicks times a factor: off the rows, in places and in rates, by no more than what
+    /// bends. Without rows as it is. Roundings are of no body more than of others.
+    State beside(const State& state, const Kicks& kicks, double factor, bool are_roundings);
+
+private:
+    std::vector<Matrix34> allowed(const State& at, const std::vector<Matrix34>& moves, bool are_roundings);
+
+    const Model& model_;
+    std::vector<int> rows_;
+    std::optional<Model> alike_model_;          // all bodies have one mass
+    std::optional<NearestRates> own_, alike_;   // without drives
+};
 
 /// A share of the difference of two states.
 struct Difference {
