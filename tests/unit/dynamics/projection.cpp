@@ -80,7 +80,8 @@ TEST(Projection, RatesOfManyStatesAreThoseOfEach)
             Random random(seed);
             for (int k = 0; k < 3; ++k) {
                 std::vector<Matrix34> rigid;
-                for (const Matrix34& X : at.start.X) rigid.push_back(rate(X, random.vector(), random.vector()));
+                for (const Matrix34& X : at.start.X)
+                    rigid.push_back(rate(X, random.vector(), random.vector()));
                 const auto one = nearest_rates(model, at.start.X, rigid, at.independent),
                            other = many.at(0, at.start.X, rigid);
                 for (std::size_t b = 0; b < one.size(); ++b) {
