@@ -133,6 +133,7 @@ export interface Extent {
   near: Float32Array; // without the far flights of some bodies, if there are any
   leaving: string[]; // the names of these bodies
 }
+const seen_of_path = 24; // points of a curve that moves
 const far_away = 3; // times as far from the middle as everything else
 const kept_flight = 1.5; // likewise: how much of such a flight is near
 
@@ -191,6 +192,13 @@ export function extent_of(run: Run): Extent {
     for (const { body, point } of run.attachments) {
       p.copy(point).applyMatrix4(poses.matrices[body]);
       see(body);
+    }
+    for (const { first, path } of meta.joints) {
+      const step = Math.ceil((path ?? []).length / seen_of_path);
+      for (let i = 0; first >= 0 && i < (path ?? []).length; i += step) {
+        p.fromArray(path![i]).applyMatrix4(poses.matrices[first]);
+        see(first);
+      }
     }
   });
   for (const joint of meta.joints) if (joint.first < 0) all.push(...joint.point_first);
