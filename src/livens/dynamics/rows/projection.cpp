@@ -258,12 +258,11 @@ Closing close_rows_from(const Model& model, std::span<const Matrix34> X_from,
     return closer.run(false, 1e-4);
 }
 
-namespace {
-
-std::vector<Matrix34> nearest_by(const std::vector<Inertia>& inertias, const Model& model,
-                                 std::span<const Matrix34> X, std::span<const Matrix34> V,
-                                 std::span<const int> rows, std::span<const double> drive_rates)
+std::vector<Matrix34> nearest_rates(const Model& model, std::span<const Matrix34> X,
+                                    std::span<const Matrix34> V, std::span<const int> rows,
+                                    std::span<const double> drive_rates)
 {
+    const std::vector<Inertia> inertias(model.bodies().begin(), model.bodies().end());
     const Projector projector(model, inertias, X, rows);
     // The first pass projects, the others take rounding out of dPhi/dt and of the part that does not move any
     // more.
@@ -282,28 +281,6 @@ std::vector<Matrix34> nearest_by(const std::vector<Inertia>& inertias, const Mod
         }
     }
     return rates;
-}
-
-}   // namespace
-
-std::vector<Matrix34> nearest_rates(const Model& model, std::span<const Matrix34> X,
-                                    std::span<const Matrix34> V, std::span<const int> rows,
-                                    std::span<const double> drive_rates)
-{
-    const std::vector<Inertia> inertias(model.bodies().begin(), model.bodies().end());
-    return nearest_by(inertias, model, X, V, rows, drive_rates);
-}
-
-std::vector<Matrix34> nearest_if_alike(const Model& model, std::span<const Matrix34> X,
-                                       std::span<const Matrix34> moves, std::span<const int> rows)
-{
-    std::vector<Inertia> inertias;
-    for (Body body : model.bodies()) {
-        const double mass = body.mass(0, 0);
-        if (mass > 0) body.mass *= 1 / mass;
-        inertias.emplace_back(body);
-    }
-    return nearest_by(inertias, model, X, moves, rows, {});
 }
 
 }   // namespace livens::inline dynamics_internal

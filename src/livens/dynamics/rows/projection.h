@@ -33,9 +33,5 @@ Closing close_rows_from(const Model& model, std::span<const Matrix34> X_from,
 std::vector<Matrix34> nearest_rates(const Model& model, std::span<const Matrix34> X,
                                     std::span<const Matrix34> V, std::span<const int> rows,
                                     std::span<const double> drive_rates = {});
-/// The moves nearest to the given ones that the rows allow, as if all bodies had one mass: of no body more
-/// than others were to move.
-std::vector<Matrix34> nearest_if_alike(const Model& model, std::span<const Matrix34> X,
-                                       std::span<const Matrix34> moves, std::span<const int> rows);
 
 }   // namespace livens::inline dynamics_internal

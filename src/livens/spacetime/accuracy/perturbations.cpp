@@ -198,8 +198,7 @@ std::vector<Matrix34> KickedStates::allowed(const State& at, const std::vector<M
 {
     if (model_.has_drives()) {
         const Model still = frozen(model_, {at.t});
-        return are_roundings ? nearest_if_alike(still, at.X, moves, rows_)
-                             : nearest_rates(still, at.X, moves, rows_);
+        return nearest_rates(are_roundings ? with_masses_alike(still) : still, at.X, moves, rows_);
     }
     if (!are_roundings) return (own_ ? *own_ : own_.emplace(model_, rows_)).at(at.t, at.X, moves);
     if (!alike_) {
