@@ -72,6 +72,7 @@ CORE = {room for rooms in FLOORS[:FLOORS.index(["io"])] for room in rooms}
 TOML = re.compile(r'''\w\s*=\s*\\?["'] | (?<!\w)\[\[?(?!world\])[a-z_.]{3,}\]''', re.X)
 
 LINE, HEADER, SOURCE, TEST, FUNCTION, BASE = 110, 300, 400, 600, 60, 300
+DEPTH = 14   # files one above the other by what they include, the source among them
 # Data members of a class, with those of its inner classes, static ones not counted; more is two classes.
 MEMBERS = 15
 BAD_NAMES = {"util", "utils", "utility", "utilities", "common", "misc", "helper", "helpers"}
@@ -266,6 +267,31 @@ def check_circles(check, graph):
             visit(path, [path])
 
 
+def check_depth(check, graph):
+    """graph as above, without circles. Reports the first edge of the longest way down from a source."""
+    known = {}
+
+    def depth(path):
+        if path not in known:
+            known[path] = 0   # a circle ends here
+            known[path] = 1 + max((depth(other) for _, other in graph.get(path, ())), default=0)
+        return known[path]
+
+    sources = [path for path in graph if check.root / "src" in path.parents]
+    deepest = max(sources, key=depth, default=None)
+    if deepest is not None and depth(deepest) > DEPTH:
+        number, below = max(graph[deepest], key=lambda edge: depth(edge[1]))
+        check.fault(deepest, number, "deep", f"{depth(deepest)} files one above the other, {DEPTH} are allowed: "
+                    f"declare what {below.name} has, where no more is needed of it")
+
+
+def check_catches(check, path, text):
+    """Where a complaint decides what is done: the core returns what else may come (try_ functions)."""
+    for match in re.finditer(r"catch \((?:const )?InputError\b", without_comments(text)):
+        check.fault(path, text.count("\n", 0, match.start()) + 1, "steer",
+                    "a caught InputError decides what is done: let a function return why not")
+
+
 def check_namespace(check, path, room, text, installed):
     """Names that users have stand in livens, those inside of a room in an inline namespace of its own: two rooms may then use
     one word without being one type. What a header adds to a public class stays in livens."""
@@ -305,6 +331,7 @@ def check_floors(root):
         lines = check_sizes(check, path, text, TEST if is_test else SOURCE)
         if room in CORE and not is_test:
             check_wording(check, path, text)
+            check_catches(check, path, text)
         if path.suffix == ".h" and root / "src" in path.parents:
             check_namespace(check, path, room, text, installed)
         if room == "base" and not is_test:
@@ -314,6 +341,7 @@ def check_floors(root):
     if not graph:
         check.faults.append(f"{root}: no sources found [room]")
     check_circles(check, graph)
+    check_depth(check, graph)
     return check.faults
 
 
@@ -424,6 +452,9 @@ GOOD = {
     "apps/livens/main.cpp": '#include "livens/io/file.h"\n#include "parts.h"\n#include "livens/parts.h"\n'
                             '#include <CLI/CLI.hpp>\n',
     "apps/livens/parts.h": "#pragma once\n",
+    "src/livens/io/steer.cpp": "int f() { try { g(); } catch (const InputError& why) { return 1; } }\n",
+    **{f"src/livens/time/d{i}.h": "#pragma once\n" + (f'#include "livens/time/d{i + 1}.h"\n' if i < DEPTH - 1 else "")
+       for i in range(DEPTH)},
     "tests/unit/time/mesh_test.cpp": '#include "livens/time/mesh.h"\n#include <gtest/gtest.h>\n',
 }
 
@@ -449,6 +480,9 @@ CONTROLS = [
     ("circle", {"src/livens/time/a.h": '#pragma once\n#include "livens/time/b.h"\n',
                 "src/livens/time/b.h": '#pragma once\n#include "livens/time/a.h"\n'}),
     ("circle", {"src/livens/time/self.h": '#pragma once\n#include "livens/time/self.h"\n'}),
+    ("deep", {f"src/livens/time/d{i}.h": "#pragma once\n" + (f'#include "livens/time/d{i + 1}.h"\n' if i < DEPTH else "")
+              for i in range(DEPTH + 1)}),
+    ("steer", {"src/livens/spacetime/steer.cpp": "int f() { try { g(); } catch (const InputError& why) { return 1; } }\n"}),
     ("relative", {"src/livens/multibody/rel.cpp": '#include "../time/mesh.h"\n'}),
     ("relative", {"src/livens/multibody/rel.cpp": '#include "model.h"\n'}),
     ("relative", {"src/livens/multibody/rel.cpp": '#include "livens/multibody/../io/file.h"\n'}),
