@@ -255,6 +255,7 @@ TEST(UnknownsOfFiles, ThatAreWrongAreRefusedWhereTheyStand)
         {"type = \"spring\"", "type = { unknown = 3 }", "unknown-place"},
         {"family = \"lobatto\"", "family = \"radau\"", "conditions-method"},
         {"end = 2", "end = { unknown = 2 }", "conditions-too-few"},
+        {"unknown = 0.3, low = 0 }", "unknown = 0, low = -1 }", "out-of-range"},
     };
     for (const Wrong& wrong : cases) {
         const std::string text = replaced(pendulum, wrong.from, wrong.to);
@@ -264,6 +265,13 @@ TEST(UnknownsOfFiles, ThatAreWrongAreRefusedWhereTheyStand)
         ASSERT_NE(told, nullptr) << wrong.to << '\n' << shown(result);
         EXPECT_GT(told->line, 0) << wrong.to;
     }
+    // beside a guess there may be no model: the number is named, and where it stands
+    const ScenarioResult beside =
+        read(replaced(pendulum, "unknown = 0.3, low = 0 }", "unknown = 0, low = -1 }"));
+    const Diagnostic* told = find(beside, "out-of-range");
+    ASSERT_NE(told, nullptr);
+    EXPECT_EQ(told->line, 33) << shown(beside);
+    EXPECT_NE(told->message.find("the unknown 'friction.damping' is -0"), std::string::npos) << told->message;
     const std::string parameter = replaced(pendulum, "L = \"100 cm\"", "L = { unknown = \"100 cx\" }");
     const ScenarioResult computed = read(parameter);
     ASSERT_EQ(computed.diagnostics.size(), 1u) << shown(computed);

@@ -127,13 +127,9 @@ private:
         if (whole.refused) throw InputError(std::move(*whole.refused));
         const Model& model = whole.model != nullptr ? *whole.model : *tables_.model;
         const NumberedProblem problem(model, ends_, mesh, unknowns);
-        const std::vector<double> guesses = problem.guesses();   // with those of what unfolds it
-        for (int j = 0; j < problem.size(); ++j)
-            for (const NumberedProblem::Sample& sample : problem.samples(j, guesses[j])) {
-                std::vector<double> values = guesses;
-                values[j] = sample.value;
-                add_sample(problem.at(values), j, sample.weight);
-            }
+        for (int j = 0; j < problem.size(); ++j)   // with those of what unfolds it
+            for (const NumberedProblem::Sample& sample : problem.samples(j, problem[j].guess))
+                add_sample(problem.beside_guesses(j, sample.value), j, sample.weight);
     }
 
     void add_sample(const NumberedProblem::Instance& other, int j, double weight)

@@ -104,11 +104,21 @@ NumberedProblem::Tried NumberedProblem::try_at(std::span<const double> values) c
     return {std::move(made), {}};
 }
 
-NumberedProblem::Instance NumberedProblem::at(std::span<const double> values) const
+/// Derivatives ask for models on either side of a guess, unless its bounds say that there are none.
+NumberedProblem::Instance NumberedProblem::beside_guesses(int i, double value) const
 {
+    std::vector<double> values = guesses();
+    values[i] = value;
     Tried tried = try_at(values);
-    if (!tried.made) throw InputError(std::move(tried.why));
-    return std::move(*tried.made);
+    if (tried.made) return std::move(*tried.made);
+    const UnknownNumber& number = numbers_[i];
+    Complaint& why = tried.why;
+    why.path = "unknown[" + number.name + "]";
+    why.message = "where the unknown '" + number.name + "' is " + to_text(value, 6) + ", beside its guess " +
+                  to_text(number.guess, 6) + ", there is no model: " + why.message;
+    why.help = "give bounds ('low', 'high') inside of which there is one, or another guess" +
+               (why.help.empty() ? "" : "; " + why.help);
+    throw InputError(std::move(why));
 }
 
 /// The model itself, by a pointer that does not own it.

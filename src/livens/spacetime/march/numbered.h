@@ -30,8 +30,8 @@ public:
         Complaint why;
     };
     Tried try_at(std::span<const double> values) const;
-    /// Throws InputError instead.
-    Instance at(std::span<const double> values) const;
+    /// All guesses but one. Throws InputError, naming the number.
+    Instance beside_guesses(int i, double value) const;
 
     int size() const { return static_cast<int>(numbers_.size()); }
     /// Those of the problem, then those of what unfolds it.
