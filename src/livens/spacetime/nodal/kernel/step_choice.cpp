@@ -23,7 +23,7 @@ constexpr double dear = 2;                         // elements
 // Factors in an element that say that none is kept for long; how steps of free bodies shrink where they are
 // worth their while, which goes with the square of the length; and a length short enough to try them.
 constexpr int many_factors = 2;
-constexpr double dearest = 40;   // steps of free bodies: two elements of half the length are cheaper
+constexpr double dearest = 50;   // steps of free bodies: two elements of half the length are cheaper
 constexpr double good_contraction = 0.3, much_shorter = 0.5, shorter = 0.85;
 constexpr double same_length = 0.03;   // of the motion of stiff loads a factor then leaves about twice that
 
