@@ -34,7 +34,7 @@ Functions functions(const BasisCase& basis, int element, double s)
 
 using Column = std::vector<double>;
 
-double norm(const Column& v)
+double length_of(const Column& v)
 {
     double sum = 0;
     for (const double x : v) sum += x * x;
@@ -44,7 +44,7 @@ double norm(const Column& v)
 /// Takes off what lies in the span of the orthonormal columns; what is left, relative to what there was.
 double reduce(Column& v, const std::vector<Column>& Q)
 {
-    const double before = norm(v);
+    const double before = length_of(v);
     for (int sweep = 0; sweep < 2; ++sweep) {   // twice is enough for orthogonality to rounding
         for (const Column& q : Q) {
             double along = 0;
@@ -52,7 +52,7 @@ double reduce(Column& v, const std::vector<Column>& Q)
             for (std::size_t i = 0; i < v.size(); ++i) v[i] -= along * q[i];
         }
     }
-    return before > 0 ? norm(v) / before : 0;
+    return before > 0 ? length_of(v) / before : 0;
 }
 
 /// Orthonormal columns of the same span, and the smallest part of a column that was not in those before it.
@@ -62,7 +62,7 @@ double orthonormalise(std::vector<Column>& columns)
     std::vector<Column> Q;
     for (Column& v : columns) {
         smallest = std::min(smallest, reduce(v, Q));
-        const double length = norm(v);
+        const double length = length_of(v);
         if (length > 0) {
             for (double& x : v) x /= length;
         }

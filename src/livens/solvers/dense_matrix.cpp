@@ -7,25 +7,9 @@
 #include <cassert>
 #include <cmath>
 
-#include <Eigen/Core>
+#include "livens/solvers/detail/eigen_views.h"
 
 namespace livens::inline solvers_internal {
-
-namespace {
-
-/// The same entries in Eigen's eyes.
-Eigen::Map<const Eigen::MatrixXd> seen(DenseView A) { return {A.a, A.rows, A.cols}; }
-Eigen::Map<Eigen::MatrixXd> seen(DenseMatrix& A) { return {A.a.data(), A.rows, A.cols}; }
-Eigen::Map<const Eigen::VectorXd> seen(std::span<const double> x)
-{
-    return {x.data(), static_cast<Eigen::Index>(x.size())};
-}
-Eigen::Map<Eigen::VectorXd> seen(std::vector<double>& x)
-{
-    return {x.data(), static_cast<Eigen::Index>(x.size())};
-}
-
-}   // namespace
 
 DenseMatrix::DenseMatrix(int n_rows, int n_columns)
     : rows(n_rows), cols(n_columns), a(static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols), 0.0)

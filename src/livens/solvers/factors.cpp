@@ -7,34 +7,15 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include <Eigen/Dense>
 
+#include "livens/solvers/detail/eigen_views.h"
+
 namespace livens::inline solvers_internal {
 
 namespace {
-
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-Eigen::Map<const MatrixXd> seen(DenseView A) { return {A.a, A.rows, A.cols}; }
-Eigen::Map<const VectorXd> seen(std::span<const double> x)
-{
-    return {x.data(), static_cast<Index>(x.size())};
-}
-
-DenseMatrix stored(const MatrixXd& A)
-{
-    return DenseMatrix({static_cast<int>(A.rows()), static_cast<int>(A.cols()), A.data()});
-}
-std::vector<double> values_of(const VectorXd& x) { return {x.begin(), x.end()}; }
-
-bool all_finite(DenseView A) { return livens::all_finite(A.entries()); }
 
 DenseMatrix all_nan(int rows, int cols)
 {
@@ -62,7 +43,7 @@ struct PivotedQR::Factors {
 
 PivotedQR::PivotedQR(DenseView A) : factors_(new Factors{A.rows, A.cols, std::nullopt})
 {
-    if (A.rows > 0 && A.cols > 0 && all_finite(A)) factors_->qr.emplace(seen(A));
+    if (A.rows > 0 && A.cols > 0 && all_finite(A.entries())) factors_->qr.emplace(seen(A));
 }
 
 PivotedQR::~PivotedQR() = default;
@@ -98,7 +79,7 @@ std::vector<double> PivotedQR::solve(std::span<const double> b) const
     assert(static_cast<int>(b.size()) == factors_->rows);
     // A matrix of zeros has rank 0, for which the solution of least size is zero; Eigen would divide 0 by 0.
     const bool is_zero = n_pivots() == 0 || pivot(0) == 0;
-    if (is_zero || !factors_->qr || !livens::all_finite(b))
+    if (is_zero || !factors_->qr || !all_finite(b))
         return std::vector<double>(static_cast<std::size_t>(factors_->cols), is_zero ? 0 : nan);
     return values_of(factors_->qr->solve(VectorXd(seen(b))));
 }
@@ -107,7 +88,7 @@ DenseMatrix orthonormal_columns(DenseView A)
 {
     assert(A.rows >= A.cols);
     if (A.cols == 0) return {A.rows, 0};
-    if (!all_finite(A)) return all_nan(A.rows, A.cols);
+    if (!all_finite(A.entries())) return all_nan(A.rows, A.cols);
     const Eigen::HouseholderQR<MatrixXd> qr(seen(A));
     return stored(qr.householderQ() * MatrixXd::Identity(A.rows, A.cols));
 }
@@ -116,7 +97,7 @@ DenseMatrix upper_factor(DenseView A)
 {
     assert(A.rows >= A.cols);
     if (A.cols == 0) return {};
-    if (!all_finite(A)) return all_nan(A.cols, A.cols);
+    if (!all_finite(A.entries())) return all_nan(A.cols, A.cols);
     const Eigen::HouseholderQR<MatrixXd> qr(seen(A));
     return stored(qr.matrixQR().topRows(A.cols).triangularView<Eigen::Upper>());
 }
@@ -125,7 +106,7 @@ DenseMatrix least_squares(DenseView A, DenseView B)
 {
     assert(A.rows == B.rows && A.rows >= A.cols);
     if (A.cols == 0 || B.cols == 0) return {A.cols, B.cols};
-    if (!all_finite(A) || !all_finite(B)) return all_nan(A.cols, B.cols);
+    if (!all_finite(A.entries()) || !all_finite(B.entries())) return all_nan(A.cols, B.cols);
     return stored(Eigen::HouseholderQR<MatrixXd>(seen(A)).solve(MatrixXd(seen(B))));
 }
 
@@ -145,7 +126,7 @@ std::vector<double> upper_solution(DenseView R, std::span<const double> b)
 
 DenseMatrix null_space(DenseView A, double threshold)
 {
-    if (A.cols == 0 || !all_finite(A)) return {A.cols, 0};
+    if (A.cols == 0 || !all_finite(A.entries())) return {A.cols, 0};
     if (A.rows == 0) return stored(MatrixXd::Identity(A.cols, A.cols));
     // Full pivoting tells rank where columns differ in size; the basis it gives is not orthonormal.
     Eigen::FullPivLU<MatrixXd> lu(seen(A));
@@ -158,7 +139,7 @@ DenseMatrix cholesky(DenseView A)
 {
     assert(A.rows == A.cols);
     if (A.rows == 0) return {};
-    if (!all_finite(A)) return all_nan(A.rows, A.cols);
+    if (!all_finite(A.entries())) return all_nan(A.rows, A.cols);
     // A matrix that is not positive definite comes out as nan, which callers find by one look at the result.
     const Eigen::LLT<MatrixXd> factor(seen(A));
     if (factor.info() != Eigen::Success) return all_nan(A.rows, A.cols);
@@ -185,13 +166,10 @@ std::vector<double> cholesky_solution(DenseView L, std::span<const double> b)
 
 Matrix4 inverse_of_positive(const Matrix4& A)
 {
+    const DenseMatrix factor = cholesky({4, 4, A.data()});
+    const Matrix4 one = identity<4>();
     Matrix4 inverse;
-    std::ranges::fill(inverse.a, nan);
-    if (!livens::all_finite(A.a)) return inverse;
-    const Eigen::Matrix4d copy = Eigen::Map<const Eigen::Matrix4d>(A.data());
-    const Eigen::LLT<Eigen::Matrix4d> factor(copy);
-    if (factor.info() != Eigen::Success) return inverse;
-    Eigen::Map<Eigen::Matrix4d>(inverse.data()) = factor.solve(Eigen::Matrix4d::Identity());
+    std::ranges::copy(cholesky_solution(factor, {4, 4, one.data()}).a, inverse.data());
     return inverse;
 }
 
@@ -199,7 +177,7 @@ LUSolution lu_solution(DenseView A, std::span<const double> b)
 {
     assert(A.rows == A.cols && A.rows == static_cast<int>(b.size()));
     if (A.rows == 0) return {};
-    if (!all_finite(A) || !livens::all_finite(b)) return {std::vector<double>(b.size(), nan), nan, nan};
+    if (!all_finite(A.entries()) || !all_finite(b)) return {std::vector<double>(b.size(), nan), nan, nan};
     const Eigen::PartialPivLU<MatrixXd> lu(seen(A));
     // The quotient of the smallest and the largest pivot is a cheap, rough measure of singularity.
     const VectorXd pivots = lu.matrixLU().diagonal().cwiseAbs();

@@ -5,7 +5,6 @@
 // along the chain and fills the band. Rows are exchanged for the largest entry of a column (Eigen's threshold
 // 1): the diagonal blocks of the paper's elements are O(h) beside couplings of 1/2, so a pivot on the
 // diagonal cannot be trusted.
-#define EIGEN_MPL2_ONLY   // nothing of the LGPL, be it in some version of Eigen
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
 
@@ -52,9 +51,9 @@ namespace {
 /// Eigen counts the entries of the factors, with the padding of its supernodes, in the matrix' own index
 /// type. Millions of unknowns bring 4e8 entries and more, too near to 2^31; the wider type was not measurably
 /// slower.
-using Index = std::int64_t;
-using EigenMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
-using EigenLU = Eigen::SparseLU<EigenMatrix, Eigen::NaturalOrdering<Index>>;
+using WideIndex = std::int64_t;
+using EigenMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, WideIndex>;
+using EigenLU = Eigen::SparseLU<EigenMatrix, Eigen::NaturalOrdering<WideIndex>>;
 using EigenVector = Eigen::Map<const Eigen::VectorXd>;
 
 class EigenBackend final : public SparseLU::Implementation {

@@ -8,7 +8,6 @@
 #include <new>
 #include <string>
 
-#define EIGEN_MPL2_ONLY   // nothing of the LGPL, be it in some version of Eigen
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 
@@ -16,15 +15,15 @@ namespace livens::inline solvers_internal {
 
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double>;
+using EigenColumns = Eigen::SparseMatrix<double>;
 
-Matrix sum_of(std::span<const SparseEntry> entries, int n_rows, int n_columns, bool keep_zeros)
+EigenColumns sum_of(std::span<const SparseEntry> entries, int n_rows, int n_columns, bool keep_zeros)
 {
     std::vector<Eigen::Triplet<double>> triplets;
     triplets.reserve(entries.size());
     for (const SparseEntry& entry : entries)
         if (keep_zeros || entry.value != 0) triplets.emplace_back(entry.row, entry.column, entry.value);
-    Matrix sum(n_rows, n_columns);
+    EigenColumns sum(n_rows, n_columns);
     sum.setFromTriplets(triplets.begin(), triplets.end());
     return sum;
 }
@@ -32,8 +31,8 @@ Matrix sum_of(std::span<const SparseEntry> entries, int n_rows, int n_columns, b
 }   // namespace
 
 struct SparseRows::Matrices {
-    Matrix G;
-    Eigen::SimplicialLDLT<Matrix> factor;
+    EigenColumns G;
+    Eigen::SimplicialLDLT<EigenColumns> factor;
 };
 
 /// The same by plain loops, row by row: of few rows it takes a fourth of the time.
@@ -134,7 +133,7 @@ SparseRows::SparseRows(int n_rows, int n_columns, std::span<const Entry> entries
     }
     matrices_ = std::make_unique<Matrices>();
     matrices_->G = sum_of(entries, n_rows, n_columns, false);
-    const Matrix S = matrices_->G * matrices_->G.transpose();
+    const EigenColumns S = matrices_->G * matrices_->G.transpose();
     matrices_->factor.compute(S);
     if (matrices_->factor.info() != Eigen::Success) return;
     const Eigen::VectorXd pivots = matrices_->factor.vectorD(),
@@ -180,7 +179,7 @@ std::optional<std::vector<double>> sparse_solution(std::span<const SparseEntry> 
     const int n = static_cast<int>(b.size());
     if (n == 0) return std::vector<double>{};
     if (!std::ranges::all_of(A, [](const SparseEntry& e) { return std::isfinite(e.value); })) return {};
-    const Eigen::SparseLU<Matrix> lu(sum_of(A, n, n, true));
+    const Eigen::SparseLU<EigenColumns> lu(sum_of(A, n, n, true));
     if (lu.lastErrorMessage().starts_with("UNABLE")) throw std::bad_alloc();   // to allocate working memory
     if (lu.info() != Eigen::Success) return {};
     const Eigen::VectorXd x = lu.solve(Eigen::Map<const Eigen::VectorXd>(b.data(), n));

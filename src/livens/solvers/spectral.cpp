@@ -6,40 +6,17 @@
 
 #include <algorithm>
 #include <cassert>
-#include <limits>
 
 #include <Eigen/Dense>
 
+#include "livens/solvers/detail/eigen_views.h"
 #include "livens/solvers/factors.h"
 
 namespace livens::inline solvers_internal {
 
 namespace {
 
-using Eigen::MatrixXd;
-using Map3 = Eigen::Map<const Eigen::Matrix3d>;
 using Symmetric = Eigen::SelfAdjointEigenSolver<MatrixXd>;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-Eigen::Map<const MatrixXd> seen(DenseView A) { return {A.a, A.rows, A.cols}; }
-Eigen::Map<const Eigen::VectorXd> seen(std::span<const double> x)
-{
-    return {x.data(), static_cast<Eigen::Index>(x.size())};
-}
-
-DenseMatrix stored(const MatrixXd& A)
-{
-    return DenseMatrix({static_cast<int>(A.rows()), static_cast<int>(A.cols()), A.data()});
-}
-
-template <int N>
-Matrix<N, 1> all_nan()
-{
-    Matrix<N, 1> values;
-    std::ranges::fill(values.a, nan);
-    return values;
-}
 
 SymmetricSpectrum not_found(int n, bool with_vectors)
 {
@@ -51,7 +28,7 @@ SymmetricSpectrum not_found(int n, bool with_vectors)
 
 SymmetricSpectrum result_of(const Symmetric& solver, bool with_vectors)
 {
-    const Eigen::VectorXd& values = solver.eigenvalues();
+    const VectorXd& values = solver.eigenvalues();
     if (solver.info() != Eigen::Success) return not_found(static_cast<int>(values.size()), with_vectors);
     return {
         true, {values.begin(), values.end()}, with_vectors ? stored(solver.eigenvectors()) : DenseMatrix{}};
@@ -105,34 +82,29 @@ SymmetricSpectrum tridiagonal_spectrum(std::span<const double> diagonal, std::sp
     return result_of(solver, true);
 }
 
+// Of small matrices as of all: solvers for a fixed size are seconds of compiling each.
 PrincipalValues symmetric_spectrum(const Matrix3& A)
 {
-    if (!all_finite(A.a)) return {all_nan<3>(), nan * identity<3>()};
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(Map3(A.data()));
+    const SymmetricSpectrum spectrum = symmetric({3, 3, A.data()}, true);
     PrincipalValues found{};
-    std::copy_n(solver.eigenvalues().data(), 3, found.values.data());
-    std::copy_n(solver.eigenvectors().data(), 9, found.vectors.data());
+    std::ranges::copy(spectrum.values, found.values.data());
+    std::ranges::copy(spectrum.vectors.a, found.vectors.data());
     return found;
 }
 
-namespace {
-
-template <int N>
-Matrix<N, 1> small_values(const Matrix<N, N>& A)
+Vector3 symmetric_values(const Matrix3& A)
 {
-    if (!all_finite(A.a)) return all_nan<N>();
-    using Fixed = Eigen::Matrix<double, N, N>;
-    const Fixed copy = Eigen::Map<const Fixed>(A.data());
-    const Eigen::SelfAdjointEigenSolver<Fixed> solver(copy, Eigen::EigenvaluesOnly);
-    Matrix<N, 1> values;
-    std::copy_n(solver.eigenvalues().data(), N, values.data());
-    return solver.info() == Eigen::Success ? values : all_nan<N>();
+    Vector3 values;
+    std::ranges::copy(symmetric({3, 3, A.data()}, false).values, values.data());
+    return values;
 }
 
-}   // namespace
-
-Vector3 symmetric_values(const Matrix3& A) { return small_values(A); }
-Vector4 symmetric_values(const Matrix4& A) { return small_values(A); }
+Vector4 symmetric_values(const Matrix4& A)
+{
+    Vector4 values;
+    std::ranges::copy(symmetric({4, 4, A.data()}, false).values, values.data());
+    return values;
+}
 
 GeneralSpectrum general_spectrum(DenseView A)
 {
@@ -171,9 +143,10 @@ Matrix3 orthogonal_factor(const Matrix3& A)
 {
     Matrix3 Q = nan * identity<3>();
     if (!all_finite(A.a)) return Q;
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(Map3(A.data()), Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Eigen::JacobiSVD<MatrixXd> svd(seen({3, 3, A.data()}), Eigen::ComputeFullU | Eigen::ComputeFullV);
     // The polar factor R of A = R U: of all orthogonal matrices it is the nearest to A.
-    Eigen::Map<Eigen::Matrix3d>(Q.data()) = svd.matrixU() * svd.matrixV().transpose();
+    const MatrixXd polar = svd.matrixU() * svd.matrixV().transpose();
+    std::copy_n(polar.data(), 9, Q.data());
     return Q;
 }
 

@@ -158,7 +158,8 @@ TEST(MixedComponents, WhatLeavesAMotionFreeIsRefused)
     const std::string by_component = "[start]\nknown = { \"rail.displacement\" = 0 }\n"
                                      "[end]\nknown = { \"rail.displacement\" = -0.2 }\n",
                       places = "[start]\ngiven = \"positions\"\n[end]\ngiven = \"positions\"\n";
-    for (const std::string& method : {mixed2, mixed3, fine})
+    const auto methods = is_sanitized ? std::vector{mixed2} : std::vector{mixed2, mixed3, fine};
+    for (const std::string& method : methods)
         for (const double share : {1.0, 0.6})
             for (const std::string& given : {by_component, places}) {
                 SCOPED_TRACE(method + given);

@@ -63,24 +63,24 @@ const Case of_states[] = {
 
 TEST(RanksLobatto, MotionsFromAStateAreThoseOfTheSerialRun)
 {
-    for (const Case& one : of_states) expect_the_same(one, {1, 2, 3, 4, 7});
+    for (const Case& one : of_states) expect_the_same(one, ranks({1, 2, 3, 4, 7}));
 }
 
 TEST(RanksLobatto, ConditionsByComponentAreThoseOfTheSerialRun)
 {
     for (const Case& one : by_component)
         if (one.text.find("lower") == std::string::npos || one.what != std::string("lower multipliers"))
-            expect_the_same(by_lobatto(one, 3), {1, 2, 4, 7});
+            expect_the_same(by_lobatto(one, 3), ranks({1, 2, 4, 7}));
 }
 
 TEST(RanksLobatto, PeriodicMotionsAreThoseOfTheSerialRun)
 {
-    for (const Case& one : periodic) expect_the_same(by_lobatto(one, 4), {1, 2, 3, 4, 7});
+    for (const Case& one : periodic) expect_the_same(by_lobatto(one, 4), ranks({1, 2, 3, 4, 7}));
 }
 
 TEST(RanksLobatto, UnknownNumbersAreThoseOfTheSerialRun)
 {
-    for (const Case& one : numbered_cases) expect_the_same(by_lobatto(one, 3), {1, 3, 4});
+    for (const Case& one : numbered_cases) expect_the_same(by_lobatto(one, 3), ranks({1, 3, 4}));
 }
 
 /// The period of a swing by the mean of arithmetic and geometric means: closed forms, and their controls.

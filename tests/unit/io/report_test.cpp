@@ -15,6 +15,7 @@
 #include "livens/io/report/payload.h"
 #include "livens/io/surface.h"
 #include "livens/spacetime/solve.h"
+#include "sanitized.h"
 
 namespace livens::report_test {
 namespace {
@@ -332,6 +333,7 @@ TEST(ReportSurface, IsThinnedWithinWhatIsSaid)
 /// A body of 400,000 triangles makes a page of a few MB, which says what was taken away.
 TEST_F(Report, OfALargeSurfaceIsSmall)
 {
+    if (is_sanitized) GTEST_SKIP() << study;
     constexpr int n = 500, m = 400;
     Outline& outline = scenario_.outlines[0];
     outline = {};

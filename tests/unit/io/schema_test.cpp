@@ -145,12 +145,12 @@ std::vector<Occurrence> occurrences()
     return all;
 }
 
-/// Those that are spoilt: one of twelve under sanitizers, which walk through the same code for every key.
+/// Those that are spoilt: one of twenty-five under sanitizers, which walk through the same code for every key.
 std::vector<Occurrence> spoilt()
 {
     std::vector<Occurrence> some;
     const std::vector<Occurrence> all = occurrences();
-    for (std::size_t i = 0; i < all.size(); i += is_sanitized ? 12 : 1) some.push_back(all[i]);
+    for (std::size_t i = 0; i < all.size(); i += is_sanitized ? 25 : 1) some.push_back(all[i]);
     return some;
 }
 

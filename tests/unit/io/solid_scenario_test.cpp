@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "livens/spacetime/solve.h"
+#include "sanitized.h"
 #include "unit/io/scenario_text.h"
 
 namespace livens::solid_scenario_test {
@@ -118,7 +119,8 @@ TEST(SolidScenario, RefusesFieldsThatAreNoDensity)
     expect_error(of("z"), "density-field", "no density");
     expect_error(of("1/(x - x)"), "density-field", "no density");
     expect_error(of("2 + t"), "density-field", "time");
-    expect_error(of("1 + abs(x + 0.3*y)^0.1"), "density-field", "too fast");
+    if (!is_sanitized)   // divided a thousand times before it is given up
+        expect_error(of("1 + abs(x + 0.3*y)^0.1"), "density-field", "too fast");
     expect_error(of("2 + r"), "expression-name", "r");
     expect_error("density = 1\n" + of("2"), "mass-conflict", "density_field");
     expect_error("mass = 1\n" + of("2"), "mass-conflict", "density_field");

@@ -45,10 +45,14 @@ void put_beside(Whole& whole, std::initializer_list<Columns> parts)
     }
 }
 
+}   // namespace
+
 /// Rows and columns that see each other, and no others: an exact zero stays one, as it does in elimination.
 struct MatrixBlock {
     std::vector<Eigen::Index> rows, columns;
 };
+
+namespace {
 
 std::vector<MatrixBlock> blocks_of(const Columns& A)
 {
@@ -142,6 +146,8 @@ RowSums sums_of(const Columns& A, Eigen::Index n1, Eigen::Index n2)
     return {beside(blocks, sums[0], n), beside(blocks, sums[1], n), beside(blocks, rest, n)};
 }
 
+}   // namespace
+
 /// Rows of both sides of a border, transposed, block by block.
 class RowsAtBorder {
 public:
@@ -191,6 +197,8 @@ private:
     Columns free_;
 };
 
+namespace {
+
 std::span<double> numbers_in(Columns& A) { return {A.data(), static_cast<std::size_t>(A.size())}; }
 std::span<double> numbers_in(Numbers& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
 
@@ -201,6 +209,8 @@ void add_product(const Columns& A, std::span<const double> x, Numbers& y)
         for (Eigen::Index i = 0; i < A.rows(); ++i) y(i) += A(i, j) * x[static_cast<std::size_t>(j)];
 }
 
+}   // namespace
+
 /// One border of a rank.
 struct OneBorder {
     Columns sums;    ///< of rows that see it alone
@@ -209,8 +219,6 @@ struct OneBorder {
     Columns rows;    ///< of the chain, by the numbers at the border
     Numbers found;   ///< particular solution
 };
-
-}   // namespace
 
 struct RankBorders::Parts {
     Columns A, sums;   // rows of the rank; sums of these that go into the chain
