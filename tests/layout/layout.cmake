@@ -19,6 +19,7 @@ foreach(check floors functions classes names docs words faults)
     # 77: a tool is missing, and the check says which.
     set_tests_properties(layout.${check} layout.${check}_refuses_faults
                          PROPERTIES LABELS fast TIMEOUT 60 SKIP_RETURN_CODE 77)
+    set_tests_properties(layout.${check}_refuses_faults PROPERTIES LABELS "fast;controls")   # see scripts/needs
 endforeach()
 add_test(NAME layout.needs_of_a_change COMMAND ${livens_python} -B ${CMAKE_CURRENT_SOURCE_DIR}/layout/needs_test.py ${PROJECT_SOURCE_DIR})
-set_tests_properties(layout.needs_of_a_change PROPERTIES LABELS fast TIMEOUT 120 SKIP_RETURN_CODE 77)
+set_tests_properties(layout.needs_of_a_change PROPERTIES LABELS "fast;controls" TIMEOUT 120 COST 50 SKIP_RETURN_CODE 77)

@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(sys.argv.pop(1) if len(sys.argv) > 1 else ".").resolve()
-EVERYTHING = {"fuzzers", "browser", "installs", "shared", "models", "site", "packages", "mutants=all"}
+EVERYTHING = {"fuzzers", "browser", "installs", "shared", "models", "controls", "site", "packages", "mutants=all"}
 IDENTITY = {f"GIT_{who}_{what}": "nobody@example.org" for who in ["AUTHOR", "COMMITTER"] for what in ["NAME", "EMAIL"]}
 
 
@@ -106,7 +106,7 @@ class Needs(unittest.TestCase):
         for path, words in [("report/src/new.ts", {"browser"}), ("docs/theory.md", {"site"}), ("packaging/README.md", {"packages"}),
                             ("tests/install/install.cmake", {"installs", "shared"}), ("tests/fuzz/mesh.cpp", {"fuzzers"}),
                             ("src/livens/geometry/new.cpp", {"fuzzers"}), ("reported/by/nobody", set()),
-                            ("src/livens/multibody/model.h", {"site", "installs", "shared"}), ("tests/layout/new.py", set())]:
+                            ("src/livens/multibody/model.h", {"site", "installs", "shared"}), ("tests/layout/new.py", {"controls"}), ("tests/unit/time/new.h", set())]:
             with self.subTest(path):
                 self.setUp()
                 self.change(path)

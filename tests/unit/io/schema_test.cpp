@@ -145,7 +145,7 @@ std::vector<Occurrence> occurrences()
     return all;
 }
 
-/// Those that are spoilt: one of twenty-five under sanitizers, which walk through the same code for every key.
+/// Those that are spoilt: one of 25 under sanitizers, which see the same code for every key.
 std::vector<Occurrence> spoilt()
 {
     std::vector<Occurrence> some;
