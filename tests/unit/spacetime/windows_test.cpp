@@ -488,5 +488,16 @@ TEST(Guess, FromManySizesOfRatesArrivesNearest)
             EXPECT_LT(norm(one.motion(0.5).X[b] - ends.end.X[b]), 1e-12);
 }
 
+/// Digits enough to tell where an element begins and ends, however short it is.
+TEST(WindowNotes, ShortElementsHaveTwoEnds)
+{
+    TimeMesh mesh;
+    mesh.ends = {0, 0.25, 0.157902 + 0.25, 0.157902 + 0.25 + 3e-9, 0.157902 + 0.25 + 2e-8};
+    EXPECT_EQ(window_at(mesh, 0, 1), "element 0 (t = 0 to 0.25 s)");
+    EXPECT_EQ(window_at(mesh, 1, 2), "element 1 (t = 0.25 to 0.407902 s)");
+    EXPECT_EQ(window_at(mesh, 2, 3), "element 2 (t = 0.407902 to 0.407902003 s)");
+    EXPECT_EQ(window_at(mesh, 2, 4), "the window of elements 2 to 3 (t = 0.407902 to 0.40790202 s)");
+}
+
 }   // namespace
 }   // namespace livens::windows_test

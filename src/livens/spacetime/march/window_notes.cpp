@@ -2,6 +2,7 @@
 #include "livens/spacetime/march/window_notes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "livens/base/text.h"
@@ -24,6 +25,13 @@ std::string named(const std::string& kind, const std::vector<std::string>& names
     return text;
 }
 
+/// That tell the ends of an interval apart, and how long it is to a tenth or so.
+int digits_apart(double start, double end)
+{
+    const double share = std::abs(end - start) / std::max(std::abs(start), std::abs(end));
+    return static_cast<int>(std::clamp(2 - std::floor(std::log10(share)), 6.0, 17.0));
+}
+
 }   // namespace
 
 double distance_between(std::span<const Matrix34> X, std::span<const Matrix34> others, double length)
@@ -42,7 +50,9 @@ std::string window_at(const TimeMesh& mesh, int first, int last)
     const std::string name = last - first == 1 ? "element " + std::to_string(first)
                                                : "the window of elements " + std::to_string(first) + " to " +
                                                      std::to_string(last - 1);
-    return name + " (t = " + to_text(mesh.ends[first], 6) + " to " + to_text(mesh.ends[last], 6) + " s)";
+    const double start = mesh.ends[first], end = mesh.ends[last];
+    const int digits = digits_apart(start, end);
+    return name + " (t = " + to_text(start, digits) + " to " + to_text(end, digits) + " s)";
 }
 
 std::string of_failure(const NewtonReport& outcome, int max_iterations, const std::string& window,
