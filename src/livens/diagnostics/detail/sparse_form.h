@@ -36,8 +36,9 @@ private:
     std::vector<Product> products_;
 };
 
-/// A coordinate of a joint and how far it is from where the bodies are stated.
-class SparseCoordinate {
+/// A coordinate of a joint and how far it is from where the bodies are stated. Hidden, as a public header
+/// whose names are not may name it first.
+class [[gnu::visibility("hidden")]] SparseCoordinate {
 public:
     SparseCoordinate(const JointCoordinate& coordinate, const double* stated);
 
