@@ -142,7 +142,7 @@ endfunction()
 
 # livens_room(NAME [EIGEN] [STACKS] [FAST | SMALL] [FAST_FOLDERS folder...] [LIBRARIES lib...]): FAST, or a FAST_FOLDER, is for
 # kernels, SMALL for what reads, writes and is asked once. LIBRARIES are linked by whatever the room is linked into. STACKS:
-# see livens_harden(). EIGEN: the room that uses Eigen inside its sources, never in a header. Eigen is given another
+# see livens_harden(). EIGEN: the room that uses Eigen inside, in no header that others see. Eigen is given another
 # namespace there: its inline functions depend on processor flags, and a program that uses Eigen with other flags must
 # not share them through the linker. cmake/eigen mends what Eigen does where memory ends.
 function(livens_room name)
