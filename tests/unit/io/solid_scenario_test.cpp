@@ -119,7 +119,7 @@ TEST(SolidScenario, RefusesFieldsThatAreNoDensity)
     expect_error(of("z"), "density-field", "no density");
     expect_error(of("1/(x - x)"), "density-field", "no density");
     expect_error(of("2 + t"), "density-field", "time");
-    if (!is_sanitized)   // divided a thousand times before it is given up
+    if (!is_sanitized)   // four seconds of dividing it before it is given up, without a sanitizer
         expect_error(of("1 + abs(x + 0.3*y)^0.1"), "density-field", "too fast");
     expect_error(of("2 + r"), "expression-name", "r");
     expect_error("density = 1\n" + of("2"), "mass-conflict", "density_field");
