@@ -240,6 +240,20 @@ function(livens_library name)
     target_link_libraries(livens_${name} PUBLIC Threads::Threads PRIVATE ${libraries})
 endfunction()
 
+# The tests of a program, but for long ones, as one test of ctest for three SOURCES: every n-th one each, so that none is
+# missed whatever the sources come to hold. What fails is in its output by name, for --gtest_filter.
+function(livens_add_shards name)
+    list(LENGTH ARGN n_sources)
+    math(EXPR n "(${n_sources} + 2) / 3")
+    math(EXPR last "${n} - 1")
+    foreach(i RANGE ${last})
+        math(EXPR number "${i} + 1")
+        add_test(NAME ${name}.${number}_of_${n} COMMAND ${name} --gtest_filter=-*.LONG_* --gtest_brief=1)
+        set_tests_properties(${name}.${number}_of_${n} PROPERTIES LABELS fast TIMEOUT 900
+                             ENVIRONMENT "GTEST_TOTAL_SHARDS=${n};GTEST_SHARD_INDEX=${i}")
+    endforeach()
+endfunction()
+
 # livens_test(NAME SOURCES file... ROOMS room... [LIBRARIES lib...] [SLOW] [STUDY]): a GoogleTest program. With ROOMS
 # it links these rooms alone (a room's unit tests build before the rooms above exist). STUDY: what is true of many whole motions,
 # which sanitizers need not see. A test whose name begins with LONG_ has the label long instead of fast.
@@ -263,7 +277,9 @@ function(livens_test name)
     target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
     if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")   # half of the time to compile; what takes time to run is in the rooms
         target_compile_options(${name} PRIVATE -O0)
-    elseif(CMAKE_BUILD_TYPE STREQUAL "Release")   # two thirds of it, likewise
+    elseif(CMAKE_BUILD_TYPE STREQUAL "Release" AND name MATCHES "^(unit|fuzz)_")   # half of it, likewise
+        target_compile_options(${name} PRIVATE -O0)
+    elseif(CMAKE_BUILD_TYPE STREQUAL "Release")   # two thirds: these compute references of their own
         target_compile_options(${name} PRIVATE -O1)
     endif()
     livens_precompile(${name} tests MORE <gtest/gtest.h> LIBRARIES GTest::gtest)
@@ -281,6 +297,10 @@ function(livens_test name)
     if(arg_SLOW)
         set(label slow)
     endif()
+    if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=address")   # whose start takes as long as most tests do: dozens a process
+        livens_add_shards(${name} ${arg_SOURCES})
+        return()
+    endif()
     gtest_discover_tests(${name} TEST_FILTER "-*.LONG_*" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
                          PROPERTIES LABELS ${label} TIMEOUT 600)
     foreach(source ${arg_SOURCES})
@@ -294,7 +314,7 @@ function(livens_test name)
 endfunction()
 
 # Every header compiles alone, and twice. Not again those that a source includes first: it proves them alone in every build
-# without precompiled headers, and twice, as others include them, too.
+# without precompiled headers, and twice, as others include them, too. LIVENS_CHECK_HEADERS may name those that are to.
 function(livens_check_headers)
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/livens/*.cpp)
     set(proved)
@@ -307,7 +327,8 @@ function(livens_check_headers)
     file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/src/livens/*.h)
     set(sources)
     foreach(header ${headers})
-        if(header IN_LIST proved OR (header MATCHES "livens/io/" AND NOT LIVENS_BUILD_PROGRAM)
+        if((LIVENS_CHECK_HEADERS MATCHES "/" AND NOT header IN_LIST LIVENS_CHECK_HEADERS)
+           OR header IN_LIST proved OR (header MATCHES "livens/io/" AND NOT LIVENS_BUILD_PROGRAM)
            OR header MATCHES "/eigen_views")   # of sources that have Eigen's path
             continue()
         endif()
@@ -316,6 +337,9 @@ function(livens_check_headers)
         file(CONFIGURE OUTPUT ${source} CONTENT "#include \"${header}\"\n#include \"${header}\"\n" @ONLY)
         list(APPEND sources ${source})
     endforeach()
+    if(NOT sources)
+        return()
+    endif()
     add_library(livens_headers OBJECT ${sources})
     target_link_libraries(livens_headers PRIVATE livens_flags)
     if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")   # there is nothing to run

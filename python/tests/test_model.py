@@ -216,7 +216,7 @@ def test_hostile_trees_are_refused() -> None:
 
 
 def test_random_edits_never_crash() -> None:
-    """Thousands of edits with nonsense: refused or taken, and the text always reads back to the same model."""
+    """Hundreds of edits with nonsense: refused or taken, and the text always reads back to the same model."""
     pick = random.Random(1)
     m = lv.Model("random")
     rod = m.add_body("rod", lv.box(1, 1, 1, mass=1))
@@ -224,7 +224,7 @@ def test_random_edits_never_crash() -> None:
     m.add_spring("s", "world", rod, stiffness=1, free_length=1)
     values = [1, -1, 0.5, "2 kg", "1 m", "rod", "world", (1, 2, 3), (0, 0, 1), [(1, 0, 0), (0, 1, 0)], {}, {"box": (1, 1, 1)},
               True, None, "", 1e308, np.zeros(3), np.eye(3), ("world", "rod"), {"times": (0, 1), "values": (1, 2)}]
-    for _ in range(2000):
+    for _ in range(700):
         section = m[pick.choice(["rod", "pivot", "s"])] if pick.random() < 0.8 else pick.choice([m.time, m.method, m.start])
         key = pick.choice([key for key in section.keys() if key != "name"])
         try:

@@ -187,7 +187,7 @@ TEST(Mutations, EachEndsInFindingsOrAScenario)
 {
     const std::vector<std::string> texts = files_of({"/examples", "/tests/fuzz/corpus"}, ".toml");
     ASSERT_GT(texts.size(), 10u);
-    damage(texts, words_of_scenarios(), 20'000, 20, test::is_answered,
+    damage(texts, words_of_scenarios(), 8'000, 20, test::is_answered,
            [](const std::string& text) { return parse_scenario(text, "").scenario.has_value(); });
 }
 
@@ -211,7 +211,7 @@ TEST(Mutations, EachColladaEndsInFacesOrAnError)
                                    [&](std::int32_t node) { return node >= 0 && node < n; }) &&
                std::ranges::all_of(mesh->points, [](const Vector3& x) { return std::isfinite(norm(x)); });
     };
-    damage(texts, words_of_colladas(), 20'000, 20, is_sound,
+    damage(texts, words_of_colladas(), 8'000, 20, is_sound,
            [&](const std::string& text) { return read(text).has_value(); });
 }
 
@@ -221,7 +221,7 @@ TEST(Mutations, EachUrdfEndsInFindingsOrAScenario)
     ASSERT_GT(texts.size(), 1u);
     UrdfOptions options;
     options.meshes = UrdfOptions::Meshes::none;
-    damage(texts, words_of_urdfs(), 20'000, 50, test::is_answered_as_urdf,
+    damage(texts, words_of_urdfs(), 8'000, 50, test::is_answered_as_urdf,
            [&](const std::string& text) { return parse_urdf(text, "", options).scenario.has_value(); });
 }
 

@@ -88,7 +88,7 @@ private:
 TEST(ResultMutations, EachIsRefusedOrTheRunThatWasWritten)
 {
     const char* wanted = std::getenv("LIVENS_MUTATIONS");
-    const unsigned n = wanted != nullptr ? static_cast<unsigned>(std::atol(wanted)) : 20'000;
+    const unsigned n = wanted != nullptr ? static_cast<unsigned>(std::atol(wanted)) : 7'000;
     const std::vector<std::string> seeds = test::result_files();
     ASSERT_GT(seeds.size(), 6u);   // of format 2.4 turns, of 2.2 lobatto and radau, of 2.1 the others
     std::vector<RunFile> runs;
@@ -134,7 +134,7 @@ TEST(ResultMutations, CraftedFilesAreRefusedOrReadInFull)
         EXPECT_FALSE(test::answer_to(test::Edits(program, seeds).bytes(), true).has_value()) << entry.path();
     }
     const char* wanted = std::getenv("LIVENS_MUTATIONS");
-    const unsigned n = wanted != nullptr ? static_cast<unsigned>(std::atol(wanted)) : 10'000;
+    const unsigned n = wanted != nullptr ? static_cast<unsigned>(std::atol(wanted)) : 4'000;
     unsigned n_read = 0;
     for (unsigned i = 0; i < n; ++i) {
         Damage damage(i);

@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(sys.argv.pop(1) if len(sys.argv) > 1 else ".").resolve()
-EVERYTHING = {"fuzzers", "browser", "installs", "shared", "models", "controls", "site", "packages", "mutants=all"}
+EVERYTHING = {"fuzzers", "browser", "installs", "shared", "models", "controls", "site", "packages", "headers=all", "mutants=all"}
 IDENTITY = {f"GIT_{who}_{what}": "nobody@example.org" for who in ["AUTHOR", "COMMITTER"] for what in ["NAME", "EMAIL"]}
 
 
@@ -54,12 +54,28 @@ class Needs(unittest.TestCase):
         run(self.folder, "git", "commit", "-q", "--allow-empty", "-m", "change")
 
     def needed(self, *arguments, **variables):
-        """The words but for mutants, the mutants' names, and what was said."""
+        """The words but for mutants and headers, the mutants' names, and what was said."""
         ran = run(self.folder, sys.executable, "-B", "scripts/needs", *arguments, **variables)
         self.assertEqual(ran.returncode, 0, ran.stderr)
         words = ran.stdout.split()
+        self.assertTrue(words[-2].startswith("headers="))
         self.assertTrue(words[-1].startswith("mutants="))
-        return set(words[:-1]), set(words[-1].removeprefix("mutants=").split(";")), ran.stderr
+        self.headers = set(words[-2].removeprefix("headers=").split(";"))
+        return set(words[:-2]), set(words[-1].removeprefix("mutants=").split(";")), ran.stderr
+
+    def test_a_header_selects_itself_and_all_that_include_it(self):
+        self.needed(LIVENS_BASE="HEAD")
+        self.assertEqual(self.headers, {"none"})
+        self.needed()
+        self.assertEqual(self.headers, {"all"}, "there is no HEAD~20")
+        (self.folder / "src/livens/new").mkdir()
+        for name, included in [("a", "<vector>"), ("b", '"livens/new/a.h"'), ("c", '"livens/new/b.h"'), ("d", "<vector>")]:
+            self.change(f"src/livens/new/{name}.h", line=f"#include {included}")
+        run(self.folder, "git", "add", ".")
+        run(self.folder, "git", "commit", "-q", "-m", "headers")
+        self.change("src/livens/new/a.h")
+        self.needed(LIVENS_BASE="HEAD")
+        self.assertEqual(self.headers, {f"livens/new/{name}.h" for name in "abc"})
 
     def test_a_source_selects_its_mutants_and_no_others(self):
         self.commit("src/livens/time/quadrature.cpp")
@@ -117,10 +133,10 @@ class Needs(unittest.TestCase):
         self.assertIn("lobatto_weight", self.needed()[1])
 
     def test_all_is_all(self):
-        self.assertEqual(self.needed("--all")[:2], (EVERYTHING - {"mutants=all"}, {"all"}))
+        self.assertEqual(self.needed("--all")[:2], (EVERYTHING - {"headers=all", "mutants=all"}, {"all"}))
 
     def test_without_git_or_history_everything_runs(self):
-        everything = (EVERYTHING - {"mutants=all"}, {"all"})
+        everything = (EVERYTHING - {"headers=all", "mutants=all"}, {"all"})
         run(self.folder, "git", "checkout", "-q", "main")   # of one commit
         self.change("README.md")
         words, mutants, said = self.needed()

@@ -41,9 +41,9 @@ inline std::string test_name(std::string what)
     return what;
 }
 
-/// Of `states`, what a study goes through: a tenth under sanitizers, where the code is walked through but the
+/// Of `states`, what a study goes through: a twentieth under sanitizers, where the code is walked through but the
 /// figures are those of every other build.
-constexpr int of_states(int states) { return is_sanitized ? states / 10 : states; }
+constexpr int of_states(int states) { return is_sanitized ? (states + 10) / 20 : states; }
 
 /// Every source of a folder, `apart` from what they share, is called by the type of a case; `fewest` of them.
 template <typename Cases>

@@ -66,46 +66,10 @@ def gif_frames(data):
     return [struct.unpack("<H", delay)[0] / 100 for delay in re.findall(rb"\x21\xf9\x04.(..)[\x00-\xff]\x00\x2c", data, re.S)]
 
 
-class Pictures(ProgramTest):
+class WithoutABrowser(ProgramTest):
     def setUp(self):
         super().setUp()
         self.solve()
-
-    def made(self, name, *options):
-        self.expect(0, "export", "run.nc", "-o", name, *options)
-        self.assert_no_temporaries()
-        return (self.folder / name).read_bytes()
-
-    @unittest.skipUnless(HAS_BROWSER, "no Chromium")
-    def test_stills(self):
-        start = self.made("start.png", "--size", "320x200")
-        self.assertEqual(png(start)[:2], (320, 200))
-        self.assertEqual(self.made("start.png", "--size", "320x200"), start, "again, over an older one")
-        self.assertNotEqual(self.made("later.png", "--size", "320x200", "--from", "0.3"), start)
-        dark, light = (sum(png(self.made("x.png", "--size", "320x200", *option))[2]) for option in (["--dark"], []))
-        self.assertLess(dark, 0.7 * light)
-        drawn = self.made("sketch.svg").decode()
-        self.assertRegex(drawn, r"^<svg [^>]*><!-- livens -->")
-
-    @unittest.skipUnless(HAS_BROWSER, "no Chromium")
-    def test_videos(self):
-        video = self.made("motion.webm", "--size", "320x200", "--duration", "2", "--fps", "10", "--names", "--clock")
-        self.assertEqual(video[:4], b"\x1a\x45\xdf\xa3")
-        self.assertEqual(struct.unpack(">d", element(video, b"\x44\x89"))[0], 2100, "ms: 21 frames")
-        self.assertEqual([int.from_bytes(element(video, side), "big") for side in (b"\xb0", b"\xba")], [320, 200])
-        moving = self.made("motion.gif", "--size", "160x100", "--duration", "1", "--fps", "5", "--to", "0.25")
-        self.assertEqual(struct.unpack_from("<HH", moving, 6), (160, 100))
-        self.assertEqual(gif_frames(moving), [0.2] * 6)
-        both = self.expect(0, "export", "run.nc", "-o", "motion.gif", "--csv", "a.csv", "--size", "64x64", "--fps", "2", "--json")
-        self.assertRegex(both.out, r'"csv": "a.csv",\s*"gif": "motion.gif"')
-
-    @unittest.skipUnless(HAS_BROWSER, "no Chromium")
-    def test_what_is_not_ours_stays(self):
-        other = b"\x89PNG\r\n\x1a\nof somebody else"
-        (self.folder / "a.png").write_bytes(other)
-        self.expect(IO, "export", "run.nc", "-o", "a.png")
-        self.assertEqual((self.folder / "a.png").read_bytes(), other)
-        self.made("a.png", "--size", "64x64", "--force")
 
     def test_no_browser(self):
         for variables in ({"PATH": str(self.folder), "CHROMIUM": ""}, {"CHROMIUM": "/nonexistent/chromium"}):
@@ -130,7 +94,46 @@ class Pictures(ProgramTest):
         self.assertIn(".webm", self.expect(USAGE, "export", "run.nc", "-o", "a.mp4").err)
         self.expect(USAGE, "export", "run.nc", "-o", "a.png", "--png", "b.png")
 
-    @unittest.skipUnless(HAS_BROWSER, "no Chromium")
+
+@unittest.skipUnless(HAS_BROWSER, "no Chromium")
+class Pictures(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.solve()
+
+    def made(self, name, *options):
+        self.expect(0, "export", "run.nc", "-o", name, *options)
+        self.assert_no_temporaries()
+        return (self.folder / name).read_bytes()
+
+    def test_stills(self):
+        start = self.made("start.png", "--size", "320x200")
+        self.assertEqual(png(start)[:2], (320, 200))
+        self.assertEqual(self.made("start.png", "--size", "320x200"), start, "again, over an older one")
+        self.assertNotEqual(self.made("later.png", "--size", "320x200", "--from", "0.3"), start)
+        dark, light = (sum(png(self.made("x.png", "--size", "320x200", *option))[2]) for option in (["--dark"], []))
+        self.assertLess(dark, 0.7 * light)
+        drawn = self.made("sketch.svg").decode()
+        self.assertRegex(drawn, r"^<svg [^>]*><!-- livens -->")
+
+    def test_videos(self):
+        video = self.made("motion.webm", "--size", "320x200", "--duration", "2", "--fps", "10", "--names", "--clock")
+        self.assertEqual(video[:4], b"\x1a\x45\xdf\xa3")
+        self.assertEqual(struct.unpack(">d", element(video, b"\x44\x89"))[0], 2100, "ms: 21 frames")
+        self.assertEqual([int.from_bytes(element(video, side), "big") for side in (b"\xb0", b"\xba")], [320, 200])
+        moving = self.made("motion.gif", "--size", "160x100", "--duration", "1", "--fps", "5", "--to", "0.25")
+        self.assertEqual(struct.unpack_from("<HH", moving, 6), (160, 100))
+        self.assertEqual(gif_frames(moving), [0.2] * 6)
+        both = self.expect(0, "export", "run.nc", "-o", "motion.gif", "--csv", "a.csv", "--size", "64x64", "--fps", "2", "--json")
+        self.assertRegex(both.out, r'"csv": "a.csv",\s*"gif": "motion.gif"')
+
+    def test_what_is_not_ours_stays(self):
+        other = b"\x89PNG\r\n\x1a\nof somebody else"
+        (self.folder / "a.png").write_bytes(other)
+        self.expect(IO, "export", "run.nc", "-o", "a.png")
+        self.assertEqual((self.folder / "a.png").read_bytes(), other)
+        self.made("a.png", "--size", "64x64", "--force")
+
     def test_a_signal_leaves_nothing_behind(self):
         temporary = self.folder / "temporary"
         temporary.mkdir()

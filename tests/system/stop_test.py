@@ -80,13 +80,13 @@ class Stops(ProgramTest):
     def test_condition_numbers_are_given_up_at_once(self):
         """Unstopped they take 30 s of CPU time and more, and the motion half a second."""
         self.write("run.toml", FREE_BODY % (10000, 100000, "true"))
-        for at in (1.2, 2.5, 4):
+        for at in (1.2, 3):
             self.assertStopsAtOnce("run.toml", at)
             info = json.loads(self.expect(0, "info", "run.nc", "--json").out)
             self.assertEqual(info["status"], "cancelled")
 
     def test_long_runs_stop_at_once(self):
-        self.write("run.toml", FREE_BODY % (40000, 400000, "false"))
+        self.write("run.toml", FREE_BODY % (20000, 200000, "false"))
         whole = self.whole_run("run.toml")
         for part in (0.05, 0.15, 0.3):
             self.assertStopsAtOnce("run.toml", part * whole)
@@ -94,7 +94,7 @@ class Stops(ProgramTest):
 
     def test_threads_of_one_motion_stop_at_once(self):
         """In the march that all of time begins with, in rows and tangents, in the elimination: of two threads either."""
-        self.write("run.toml", FREE_BODY % (2000, 20000, "false") + 'family = "mixed"\ndegree = 1\nestimate = "none"\n')
+        self.write("run.toml", FREE_BODY % (1000, 10000, "false") + 'family = "mixed"\ndegree = 1\nestimate = "none"\n')
         whole = self.whole_run("run.toml")
         for part in (0.05, 0.2, 0.35, 0.5):
             self.assertStopsAtOnce("run.toml", part * whole, "--threads", "2")
@@ -108,7 +108,7 @@ class Stops(ProgramTest):
             text += (f'[[body]]\nname = "b{i}"\nshape = {{ box = [0.9, 0.1, 0.1] }}\nmass = 1\nposition = [{i + 0.5}, 0, 0]\n'
                      f'[[joint]]\nname = "j{i}"\ntype = "revolute"\nat = [{i}, 0, 0]\naxis = [0, 1, 0]\n'
                      f'between = ["{f"b{i - 1}" if i > 0 else "world"}", "b{i}"]\n')
-        self.write("run.toml", text + "[time]\nend = 0.6\nelements = 6000\noutput = 0.01\n")
+        self.write("run.toml", text + "[time]\nend = 0.3\nelements = 3000\noutput = 0.01\n")
         whole = self.whole_run("run.toml")
         for part in (0.1, 0.3):
             self.assertStopsAtOnce("run.toml", part * whole)

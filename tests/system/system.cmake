@@ -25,8 +25,11 @@ if(LIVENS_BUILD_PROGRAM)
         foreach(line ${classes})
             string(REGEX REPLACE "^class ([A-Za-z]+).*" "\\1" name "${line}")
             set(labels ${label})
-            if(name MATCHES "^(Locking|Looks|Report|Skew|Solve|View|Watching)$")   # whole motions: minutes under sanitizers, which scripts/test leaves out
-                list(APPEND labels motions)
+            if(NOT name MATCHES "^(CraftedResults|Files|Formats|Gltf|HardEnds|HostileImport|Import|Npz|NothingIsLost|WrongInput)$")
+                list(APPEND labels motions)   # whole motions and what is printed: not under sanitizers in scripts/test
+            endif()
+            if(name STREQUAL "Pictures")
+                list(APPEND labels browser)   # see scripts/needs
             endif()
             add_test(NAME system.${name} COMMAND ${livens_python} -B ${script} ${name})
             set_tests_properties(
