@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(sys.argv.pop(1) if len(sys.argv) > 1 else ".").resolve()
-EVERYTHING = {"fuzzers", "browser", "installs", "shared", "models", "controls", "site", "packages", "headers=all", "mutants=all"}
+EVERYTHING = {"fuzzers", "program", "browser", "installs", "shared", "models", "controls", "site", "packages", "headers=all", "mutants=all"}
 IDENTITY = {f"GIT_{who}_{what}": "nobody@example.org" for who in ["AUTHOR", "COMMITTER"] for what in ["NAME", "EMAIL"]}
 
 

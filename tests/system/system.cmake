@@ -24,7 +24,7 @@ if(LIVENS_BUILD_PROGRAM)
         endif()
         foreach(line ${classes})
             string(REGEX REPLACE "^class ([A-Za-z]+).*" "\\1" name "${line}")
-            set(labels ${label})
+            set(labels ${label} program)
             if(NOT name MATCHES "^(CraftedResults|Files|Formats|Gltf|HardEnds|HostileImport|Import|Npz|NothingIsLost|WrongInput)$")
                 list(APPEND labels motions)   # whole motions and what is printed: not under sanitizers in scripts/test
             endif()
