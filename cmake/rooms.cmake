@@ -240,16 +240,17 @@ function(livens_library name)
     target_link_libraries(livens_${name} PUBLIC Threads::Threads PRIVATE ${libraries})
 endfunction()
 
-# The tests of a program, but for long ones, as one test of ctest for three SOURCES: every n-th one each, so that none is
-# missed whatever the sources come to hold. What fails is in its output by name, for --gtest_filter.
-function(livens_add_shards name)
+# livens_add_shards(NAME LABEL SOURCE..): the tests of a program, but for long ones, as one test of ctest for three sources:
+# every n-th one each, so that none is missed whatever sources come to hold. What fails is in its output by name, for
+# --gtest_filter.
+function(livens_add_shards name label)
     list(LENGTH ARGN n_sources)
     math(EXPR n "(${n_sources} + 2) / 3")
     math(EXPR last "${n} - 1")
     foreach(i RANGE ${last})
         math(EXPR number "${i} + 1")
         add_test(NAME ${name}.${number}_of_${n} COMMAND ${name} --gtest_filter=-*.LONG_* --gtest_brief=1)
-        set_tests_properties(${name}.${number}_of_${n} PROPERTIES LABELS fast TIMEOUT 900
+        set_tests_properties(${name}.${number}_of_${n} PROPERTIES LABELS ${label} TIMEOUT 900
                              ENVIRONMENT "GTEST_TOTAL_SHARDS=${n};GTEST_SHARD_INDEX=${i}")
     endforeach()
 endfunction()
@@ -298,7 +299,7 @@ function(livens_test name)
         set(label slow)
     endif()
     if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=address")   # whose start takes as long as most tests do: dozens a process
-        livens_add_shards(${name} ${arg_SOURCES})
+        livens_add_shards(${name} ${label} ${arg_SOURCES})
         return()
     endif()
     gtest_discover_tests(${name} TEST_FILTER "-*.LONG_*" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60

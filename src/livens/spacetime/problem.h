@@ -156,6 +156,8 @@ struct Problem {
     std::function<std::vector<int>(const Motion& so_far)> fired{};
     /// Whether events that end the motion do so; false: it goes on, for comparison.
     bool ends_by_events = true;
+    /// To an accuracy: whether a second solution judges each try. False: it is judged elsewhere.
+    bool is_followed = true;
 };
 
 }   // namespace livens

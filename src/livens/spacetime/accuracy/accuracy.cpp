@@ -135,7 +135,8 @@ public:
             return AfterTry::uncounted;
         }
         report.tries = tries;
-        if (!report.converged()) return AfterTry::accept;
+        if (!report.converged() || (!problem_.is_followed && solution.estimate.empty()))
+            return AfterTry::accept;
         if (!last_.is_broken_off && look_at_rounding(solution, tries)) {
             if (grown_.least_rounding() > span_.accuracy || options_.tolerance <= all_digits)
                 return give_up(solution);
@@ -204,6 +205,7 @@ private:
         WindowOptions w = window_options(model_, options_);
         w.controller = &controller;
         w.fired = problem_.fired;
+        int reached = 0;   // by the second solution, or where it would be
         w.goes_on = [&] {
             const int n = mesh.n_elements();
             if (search_.is_free && n == looked_at) {
@@ -213,9 +215,8 @@ private:
             if (n % 256 == 0 &&
                 static_cast<double>(window.monitor().so_far()->n_bytes()) > options_.most_bytes)
                 return say_too_long(mesh, report);
-            const int piece =
-                second.reached() == 0 ? least_first_piece : std::max(least_piece, second.reached() / 4);
-            const bool is_piece = n - second.reached() >= piece;
+            const int piece = reached == 0 ? least_first_piece : std::max(least_piece, reached / 4);
+            const bool is_piece = n - reached >= piece;
             if (!is_piece && n != looked_at) return true;
             window.describe(report);
             const MarchStatus look{*window.monitor().so_far(), controller.mean_length(),
@@ -225,6 +226,8 @@ private:
                 return false;
             }
             if (!is_piece) return true;
+            reached = n;
+            if (!problem_.is_followed) return true;
             one.is_broken_off = !second.advance(n, controller.take_jump()) || is_hopeless(second);
             return !one.is_broken_off;
         };
@@ -235,7 +238,7 @@ private:
         solution.unseen = window.monitor().take_unseen();
         solution.motion = window.take_motion();
         solution.method = method_;
-        if (report.converged() && !one.is_broken_off) {
+        if (report.converged() && !one.is_broken_off && !solution.estimate.empty()) {
             add_lost_vibrations(model_, solution.motion, solution.estimate);
             add_inside(model_, solution.motion, one.controller->left(), solution.estimate);
         }
@@ -247,7 +250,10 @@ private:
     {
         SolveReport& report = solution.report;
         const SolveReport& of_second = second.report();
-        const bool is_wanted = !one.fits_badly && n > 0 && report.status != SolveStatus::cancelled;
+        // states inside of elements are judged by nobody else
+        const bool is_followed = problem_.is_followed || !one.controller->left().empty();
+        const bool is_wanted =
+            is_followed && !one.fits_badly && n > 0 && report.status != SolveStatus::cancelled;
         if (is_wanted && second.reached() < n && of_second.converged() &&
             !second.advance(n, one.controller->take_jump()))
             one.is_broken_off = true;

@@ -39,7 +39,10 @@ public:
           ends_(ends), start_(ends_.start), freedoms_(ModelTables(model, ends_.independent).freedoms()),
           at_start_(highest_frequencies(model, start_)),
           length_(std::min(time_of_motion(model, start_), span.end - span.start))
-    {}
+    {
+        // both families are compared by what their second solutions say and cost
+        if (at_start_.fastest_vibration().rate * length_ >= fast_vibration) problem_.is_followed = true;
+    }
 
     Solution run()
     {
@@ -133,7 +136,7 @@ private:
     }
 
     const Model& model_;
-    const Problem& problem_;
+    Problem problem_;
     const Span& span_;
     const SolveOptions& options_;
     Lobatto lobatto_;

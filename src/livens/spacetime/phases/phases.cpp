@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "livens/base/text.h"
 #include "livens/spacetime/accuracy/until_accurate.h"
@@ -17,10 +18,12 @@ namespace {
 
 constexpr double first_phase_share = 0.3, phase_target = 0.3;   // of the accuracy
 constexpr int most_phase_tries = 4;
+constexpr double judged_as_whole = 1e-8;   // below, rounding counts, and chance
 constexpr double while_open = 1e-2;   // times the share, where the second solution has other events
 constexpr double hop_of_accuracy = 1e-3, least_hop = 1e-13;   // of the scale of a stop's row
 
-/// Phases to a share of the accuracy each, until the whole is within.
+/// Phases to a share of the accuracy each, until the whole is within. At first the second solution of the
+/// whole judges alone, as it does in the end: those of phases say where one is to be finer, if it is not.
 class PhasesToAccuracy final : public RepeatedMarch {
 public:
     PhasesToAccuracy(const PhasedProblem& given, const Span& span, const Method& method)
@@ -28,11 +31,13 @@ public:
           share_(first_phase_share * span.accuracy)
     {
         options_.growth = false;   // of the whole motion once, when it is accepted
+        problem_.is_followed = accuracy_ < judged_as_whole;
     }
 
     Solution solve() override
     {
-        Solution whole = solve_chain(given_, method_, share_, std::max(options_.meeting, accuracy_));
+        const PhasedProblem now{given_.model, problem_, given_.time, given_.options, given_.solve_phase};
+        Solution whole = solve_chain(now, method_, share_, std::max(options_.meeting, accuracy_));
         if (whole.report.converged())
             estimate(found_model(given_.model, whole), given_.problem, whole.method, options_, whole);
         return whole;
@@ -41,6 +46,10 @@ public:
     AfterTry judge(Solution& whole, int tries) override
     {
         const ErrorEstimate& found = whole.estimate;
+        if (!std::exchange(problem_.is_followed, true) && whole.report.status != SolveStatus::cancelled) {
+            const bool is_good = whole.report.converged() && !found.empty() && found.largest <= accuracy_;
+            return is_good ? AfterTry::accept : AfterTry::uncounted;
+        }
         if (whole.report.status == SolveStatus::inaccurate)   // a phase, whose message has its own accuracy
             whole.report.message += "; this is the share of a phase in the accuracy " +
                                     to_text(accuracy_, 6) + " that is asked for over events";
@@ -61,6 +70,7 @@ public:
 
 private:
     PhasedProblem given_;
+    Problem problem_ = given_.problem;
     const Method& method_;
     SolveOptions options_;
     double accuracy_, share_;
