@@ -36,6 +36,7 @@ TIES = [
     ("(constant in each known element, at most «2.5» times and at least", f"{TIME}/accuracy/remeshing.cpp", r"most_stretched = ([^,]+),"),
     ("Where elements lose less than $«10^{-4}»$ of the error together", f"{TIME}/accuracy/between_ends.cpp", r"double nothing = ([^;]+);"),
     ("differences with steps of $«10^{-3}»$ lengths or rad", f"{TIME}/march/end_point.cpp", r"step_of_places = ([^;]+);"),
+    ("From $«10^{-8}»$ on this one judges alone at first", f"{TIME}/phases/phases.cpp", r"judged_as_whole = ([^;]+);"),
     ("ends on both sides, until that is less than $«10^{-13}»$ of the element", f"{TIME}/phases/event_end.cpp", r"near_event = ([^,]+),"),
     ("So an open stop is looked for $«10^{-14}»$ of its scale behind its border", f"{TIME}/phases/event_watch.cpp", r"beyond_stop = ([^;]+);"),
     ("a stop at which bodies are (within $«10^{-12}»$)", f"{TIME}/phases/contacts.h", r"touching_stop = ([^;]+);"),

@@ -2048,6 +2048,20 @@ livens_mutant(NAME event_without_an_error
               TESTS_OF unit_io
               MUST_FAIL DecidedEvents.HaveTheOrderOfStatesAlsoWhereRatesAreAskedFor)
 
+# Phases that are followed by second solutions of their own from the first; and a whole that is taken although it is off.
+livens_mutant(NAME phases_followed_at_once
+              FILE spacetime/phases/phases.cpp
+              OLD [[problem_.is_followed = accuracy_ < judged_as_whole;]]
+              NEW [[problem_.is_followed = true;]]
+              TESTS_OF unit_io
+              MUST_FAIL DecidedEvents.HaveOneSecondSolutionWhereItIsEnough)
+livens_mutant(NAME whole_taken_although_off
+              FILE spacetime/phases/phases.cpp
+              OLD [[whole.report.converged() && !found.empty() && found.largest <= accuracy_;]]
+              NEW [[whole.report.converged();]]
+              TESTS_OF unit_io
+              MUST_FAIL DecidedEvents.HaveOneSecondSolutionWhereItIsEnough)
+
 # A load with a condition that acts all the time in lanes.
 livens_mutant(NAME load_beyond_its_event
               FILE multibody/events.cpp

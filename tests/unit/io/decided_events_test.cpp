@@ -213,6 +213,44 @@ degree = 2
     EXPECT_LT(told, 3 * error);
 }
 
+/// Two links that are let go where they lie, and a condition that comes true on the way.
+std::string two_links(const std::string& time)
+{
+    std::string text = "gravity = [0, 0, -9.81]\n";
+    for (const char* n : {"0", "1"}) {
+        const std::string at = n[0] == '0' ? "0" : "0.5", center = n[0] == '0' ? "0.25" : "0.75",
+                          before = n[0] == '0' ? "world" : "b0";
+        text += std::string("[[body]]\nname = \"b") + n +
+                "\"\nshape = { box = [0.5, 0.1, 0.1] }\nmass = 1\nposition = [" + center +
+                ", 0, 0]\n[[joint]]\nname = \"j" + n + "\"\ntype = \"revolute\"\nbetween = [\"" + before +
+                "\", \"b" + n + "\"]\nat = [" + at + ", 0, 0]\naxis = [0, 1, 0]\n";
+    }
+    return "format = 1\n" + text + "[[event]]\nname = \"low\"\nwhen = \"j0.angle > 0.5\"\n[time]\n" + time;
+}
+
+/// Where the whole is as accurate as it should be phases have none of their own, whose work counts beside the
+/// motion's; else they begin anew.
+TEST(DecidedEvents, HaveOneSecondSolutionWhereItIsEnough)
+{
+    const SolvedScenario once = solved(two_links("end = 2\naccuracy = 1e-7\n")),
+                         truth = solved(two_links("end = 2\naccuracy = 1e-11\n"));
+    ASSERT_TRUE(once.solution.report.converged()) << once.solution.report.message;
+    ASSERT_TRUE(truth.solution.report.converged()) << truth.solution.report.message;
+    EXPECT_EQ(once.solution.report.evaluations_in_all, once.solution.report.evaluations);
+    EXPECT_GT(3 * truth.solution.report.evaluations_in_all, 4 * truth.solution.report.evaluations);
+    const Motion &a = once.solution.motion, &b = truth.solution.motion;
+    const Vector3 apart = a.at_end(a.n_elements()).X[1].column(0) - b.at_end(b.n_elements()).X[1].column(0);
+    const double error = norm(apart) / once.solution.estimate.length;
+    EXPECT_LE(once.solution.estimate.largest, 1e-7);
+    EXPECT_GT(once.solution.estimate.position.back(), 0.3 * error);
+
+    // errors grow by thousands
+    const SolvedScenario again = solved(two_links("end = 4\naccuracy = 1e-5\n"));
+    ASSERT_TRUE(again.solution.report.converged()) << again.solution.report.message;
+    EXPECT_GT(again.solution.report.evaluations_in_all, 2 * again.solution.report.evaluations);
+    EXPECT_LE(again.solution.estimate.largest, 1e-5);
+}
+
 TEST(DecidedEvents, AreRefusedByName)
 {
     const auto refused = [](const std::string& text, const char* code) {
