@@ -498,8 +498,8 @@ TEST(ScenarioCodes, AllAreProvokedByTheseTests)
                    "guess-time", "guess-unused", "unknown-bounds", "unknown-guess", "unknown-march",
                    "unknown-order", "unknown-place", "unknown-unseen"});   // their own tests
     others.insert({"event-action", "event-condition", "event-method", "event-not-finite", "event-reaction",
-                   "impact-simultaneous", "stop-limits", "stop-of", "stop-restitution", "stop-self",
-                   "stop-violated"});   // decided_events_test.cpp, stops_test.cpp
+                   "impact-simultaneous", "stop-limits", "stop-of", "stop-released", "stop-restitution",
+                   "stop-self", "stop-violated"});   // decided_events_test.cpp, stops_test.cpp
     others.insert({"controller-ends", "controller-every", "controller-name", "controller-sampled",
                    "controller-size", "controller-state", "controller-states"});   // controllers_test.cpp
     others.insert(codes_of_others.begin(), codes_of_others.end());

@@ -476,6 +476,11 @@ TEST(Stops, AreRefusedByName)
     text = ball("", time);
     text.replace(text.find("joint = \"guide\""), 15, "joint = \"guild\"");
     refused(text, "joint-unknown");
+    for (const char* until : {"0.5", "\"guide.displacement < 0.5\""}) {   // it would go on without end
+        text = ball("", time);
+        text.replace(text.find("coordinate = 1"), 14, std::string("coordinate = 1\nuntil = ") + until);
+        refused(text, "stop-released");
+    }
     refused(ball("", time) + "\n[method]\nwindow = 2\n", "event-method");
 }
 

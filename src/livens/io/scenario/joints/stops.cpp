@@ -72,8 +72,20 @@ void add_one(Builder& builder, const std::string& name, const JointReference& of
     add_coordinate_stop(builder.model(), name, joint, coordinate, law, Configurations(X));
 }
 
+/// The coordinate of a joint that has let go is none that anything limits.
+void refuse_released(const Joint& joint, const std::string& name, const std::string& path)
+{
+    if (!joint.is_ended_by_event && std::isinf(joint.until)) return;
+    throw InputError(
+        {"stop-released", path + ".joint",
+         "joint '" + joint.name + "' is released, but its stop '" + name + "' would continue to act", "", "",
+         "a stop has no end",
+         "leave out 'until' of the joint, or limit the distance of two points with 'between'"});
+}
+
 void add_of_joint(Builder& builder, const Section& section, const std::string& name, const std::string& path)
 {
+    refuse_released(*find_coordinate(builder, section, path).joint, name, path);
     check_units(section, find_coordinate(builder, section, path).coordinate->coordinate.is_angle(), path);
     const Limits limits = read_stop_limits(section, path);
     // The coordinate is looked up for each: references end where a joint is added.
