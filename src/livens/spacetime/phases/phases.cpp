@@ -19,7 +19,7 @@ namespace {
 constexpr double first_phase_share = 0.3, phase_target = 0.3;   // of the accuracy
 constexpr int most_phase_tries = 4;
 constexpr double judged_as_whole = 1e-8;   // below, rounding counts, and chance
-constexpr double while_open = 1e-2;   // times the share, where the second solution has other events
+constexpr double while_open = 1e-2;        // times the share, where the second solution has other events
 constexpr double hop_of_accuracy = 1e-3, least_hop = 1e-13;   // of the scale of a stop's row
 
 /// Phases to a share of the accuracy each, until the whole is within. At first the second solution of the
@@ -40,6 +40,12 @@ public:
         Solution whole = solve_chain(now, method_, share_, std::max(options_.meeting, accuracy_));
         if (whole.report.converged())
             estimate(found_model(given_.model, whole), given_.problem, whole.method, options_, whole);
+        SolveReport& report = whole.report;
+        if (report.converged() && whole.estimate.empty() && report.estimate_failed.empty()) {
+            report.status = SolveStatus::cancelled;
+            report.failed_at = whole.motion.end();
+            report.message = "stopped as asked before the error was estimated";
+        }
         return whole;
     }
 
