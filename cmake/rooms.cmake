@@ -16,6 +16,8 @@ target_compile_options(livens_flags INTERFACE -Wall -Wextra -Wpedantic -Wconvers
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(livens_flags INTERFACE -Wno-restrict)
 endif()
+# What GCC has read it clears away when there is a gigabyte of it, not from 128 megabytes on: 5 to 10 percent of its time.
+target_compile_options(livens_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
 # Problems are stated without the braces of their conditions: solve(model, {model.start()}, ..).
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     target_compile_options(livens_flags INTERFACE -Wno-missing-braces)
