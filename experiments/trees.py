@@ -22,16 +22,7 @@ import tomllib
 import numpy as np
 
 import laws
-
-
-def cross(a, b):
-    """Vector product along the last axis."""
-    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
-    a0, a1, a2, b0, b1, b2 = (of[..., i] for of in (a, b) for i in range(3))
-    product[..., 0] = a1 * b2 - a2 * b1
-    product[..., 1] = a2 * b0 - a0 * b2
-    product[..., 2] = a0 * b1 - a1 * b0
-    return product
+from truth import cross
 
 
 def turned(axis, angle):

@@ -98,9 +98,14 @@ def quaternion(R):
 
 
 def cross(a, b):
-    """Vector product along the last axis; numpy.cross is slow."""
-    (a0, a1, a2), (b0, b1, b2) = np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)
-    return np.stack([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0], -1)
+    """Vector product along the last axis; numpy.cross is slow, and so are its functions that move axes and stack."""
+    a0, a1, a2, b0, b1, b2 = a[..., 0], a[..., 1], a[..., 2], b[..., 0], b[..., 1], b[..., 2]
+    first = a1 * b2 - a2 * b1
+    found = np.empty((*first.shape, 3), dtype=first.dtype)
+    found[..., 0] = first
+    found[..., 1] = a2 * b0 - a0 * b2
+    found[..., 2] = a0 * b1 - a1 * b0
+    return found
 
 
 def times(R, a):
