@@ -129,7 +129,7 @@ void InstantSystem::give_room(ConstraintBasis& basis) const
 /// What these rows hold.
 void InstantSystem::hold(InstantState& state, const std::vector<int>& rows, const NearFactor& near)
 {
-    state.held.rows = rows;
+    if (state.held.rows != rows) state.held.rows = rows;
     if (is_sparse_) {
         if (pattern_ == nullptr || pattern_->chosen() != rows) pattern_ = pattern_of(tables_, rows);
         state.held.joints.use(pattern_);

@@ -216,7 +216,8 @@ AcceptedElements March::close(const Elements& of)
     if (is_end && !can_move) troubles_.singular_end = mesh_.ends[far(of)];
     if ((is_end ? can_move : partition().may_shorten(of)) && troubles_.avoided < most_shifts) return closed;
     criteria.full_rank = false;   // nothing can be done about it, or that did not help
-    return window_.close(criteria, report_);
+    closed = window_.close(criteria, report_);
+    return closed;
 }
 
 RankLoss March::loss_of_failed(const Elements& of)
@@ -271,8 +272,8 @@ bool March::goes_on(const NewtonReport& outcome)
         report_.fired = options_.fired(*window_.monitor().so_far());
         if (!report_.fired.empty()) return false;
     }
-    const bool is_stuck = options_.controller != nullptr && options_.ends_at_bends && events_.is_stuck();
-    const std::string load = is_stuck ? window_.monitor().jumping_load() : "";
+    if (options_.controller == nullptr || !options_.ends_at_bends || !events_.is_stuck()) return true;
+    const std::string load = window_.monitor().jumping_load();
     return load.empty() || fail(SolveStatus::not_converged, of_sticking(load, time_));
 }
 
