@@ -5,6 +5,7 @@
 
 #include "convergence/studies.h"
 #include "livens/base/error.h"
+#include "livens/base/text.h"
 #include "newton_euler.h"
 
 namespace livens::tests::accuracy_test {
@@ -347,12 +348,20 @@ TEST(Accuracy, MassesOfAnyRatioEndWhereTheirSumsRound)
 TEST(Accuracy, StopsAsAsked)
 {
     const Model model = two_bricks();
+    int calls = 0, most = 0;
     SolveOptions options;
-    int calls = 0;
-    options.progress = [&](const Progress&) { return ++calls < 40; };
-    const Solution s = solve(model, {model.start()}, Span{0, 20, 1e-9}, Lobatto{0}, options);
-    EXPECT_EQ(s.report.status, SolveStatus::cancelled);
-    EXPECT_LT(s.motion.end(), 20);
+    options.progress = [&](const Progress&) { return ++calls < most; };
+    // stopped in the march or in the second solution, which is behind: one instant is told
+    for (most = 40; most < 2000; most = 5 * most / 4) {
+        calls = 0;
+        const Solution s = solve(model, {model.start()}, Span{0, 20, 1e-9}, Lobatto{0}, options);
+        ASSERT_EQ(s.report.status, SolveStatus::cancelled) << most;
+        EXPECT_LT(s.motion.end(), 20);
+        EXPECT_EQ(s.report.failed_at, s.motion.end());
+        EXPECT_EQ(s.report.message,
+                  "stopped at t = " + to_text(s.motion.end(), 6) +
+                      " s as asked; the motion up to there is complete");
+    }
 }
 
 }   // namespace

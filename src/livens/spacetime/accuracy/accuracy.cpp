@@ -234,7 +234,7 @@ private:
         report.notes = ends_.notes;
         solve_windows(window, mesh, w, report);
         one.controller = std::move(controller);
-        finish(solution, one, second, window.monitor().so_far()->n_elements());
+        finish(solution, one, second, *window.monitor().so_far());
         solution.unseen = window.monitor().take_unseen();
         solution.motion = window.take_motion();
         solution.method = method_;
@@ -245,9 +245,10 @@ private:
         return solution;
     }
 
-    /// The rest of the second solution, and what it says.
-    void finish(Solution& solution, Try& one, ReferenceSolution& second, int n) const
+    /// The rest of the second solution, and what it says. Where that was stopped it may be far behind.
+    void finish(Solution& solution, Try& one, ReferenceSolution& second, const Motion& so_far) const
     {
+        const int n = so_far.n_elements();
         SolveReport& report = solution.report;
         const SolveReport& of_second = second.report();
         // states inside of elements are judged by nobody else
@@ -261,7 +262,8 @@ private:
         solution.estimate_seconds = second.seconds();
         if (of_second.status == SolveStatus::cancelled) {
             report.status = SolveStatus::cancelled;
-            report.message = of_second.message;
+            report.failed_at = so_far.end();
+            report.message = of_stop(so_far.end());
         } else if (!of_second.converged()) {
             report.estimate_failed = "the second solution failed: " + of_second.message;
         }

@@ -168,7 +168,8 @@ private:
                            solution.motion.mesh, solution.estimate);
         } else if (second.report().status == SolveStatus::cancelled) {
             solution.report.status = SolveStatus::cancelled;
-            solution.report.message = second.report().message;
+            solution.report.failed_at = solution.motion.end();
+            solution.report.message = "stopped as asked before the error was estimated";
         } else {
             solution.report.estimate_failed = "the second solution failed: " + second.report().message;
         }

@@ -57,6 +57,8 @@ private:
     Elements take(Elements of, const AcceptedElements& closed, const NewtonReport& outcome);
     /// After a window that was closed: whether all who are asked let the march go on.
     bool goes_on(const NewtonReport& outcome);
+    /// Whether a load jumps where the motion stays.
+    bool slides();
     /// A window that failed as a whole.
     bool split(const Elements& of, const NewtonReport& outcome);
     /// Elements that were not accepted, from the near one on.
@@ -75,6 +77,9 @@ private:
     /// Of the mesh, or as many as it will be if it grows as it did.
     int n_elements() const;
 
+    /// Jumps before slides() looks; then twice as many.
+    static constexpr int first_jump = 32;
+
     Window& window_;
     TimeMesh& mesh_;
     const WindowOptions& options_;
@@ -87,8 +92,9 @@ private:
     std::variant<GivenMesh, AdaptiveElements> partition_;   // in place: many marches are an element long
     Attempt attempt_;
     RetryCounts troubles_;
-    int done_ = 0;      // elements
-    double time_ = 0;   // up to which they are solved
+    int n_jumps_ = 0, next_jump_ = first_jump;   // met so far, and the one at which slides() looks
+    int done_ = 0;                               // elements
+    double time_ = 0;                            // up to which they are solved
 };
 
 }   // namespace livens::inline spacetime_internal

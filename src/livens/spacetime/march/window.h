@@ -82,6 +82,9 @@ public:
     virtual double bend(double /*until*/) { return std::numeric_limits<double>::infinity(); }
     /// The load whose force jumps there; empty: none was found so far, or it bends.
     virtual std::string jumping_load() const { return ""; }
+    /// Whether the motion slides along that jump from where the element that was closed last ends, which is
+    /// there and this long.
+    virtual bool slides(double /*length*/) { return false; }
     /// The mesh has one element more: `element`, which is not closed, was divided in two.
     virtual void divided(int) {}
     /// What laws of loads did unseen inside of the elements closed so far, in the order of their solution.

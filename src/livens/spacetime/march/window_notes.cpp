@@ -109,8 +109,9 @@ std::string of_vanishing(double t, const std::string& load)
 std::string of_sticking(const std::string& load, double t)
 {
     return "sliding mode near t = " + to_text(t, 6) + " s at a discontinuity of load '" + load +
-           "', as in ideal dry friction: its force is undefined there; try: a smooth law, such as "
-           "tanh(w/0.001) for the sign of w";
+           "', as in ideal dry friction: the law drives the motion back from either side, and has no force "
+           "in "
+           "between; try: a smooth law, such as tanh(w/0.001) for the sign of w";
 }
 
 std::string of_another_period(double period, double off, double t)

@@ -44,6 +44,7 @@ public:
     /// See ElementMonitor.
     double bend(const NodalSystem& system, double until);
     std::string jumping_load() const { return switching_points_.jumping_load(); }
+    const WatchedLaw* jumping_law() const { return switching_points_.jumping_law(); }
 
     /// The element is believed.
     void take(const Nodes& nodes, int e, Unseen&& unseen);

@@ -290,6 +290,12 @@ std::string SwitchingPoints::jumping_load() const
     return jumping_ < 0 ? "" : tables_.model->loads()[jumping_].name;
 }
 
+const WatchedLaw* SwitchingPoints::jumping_law() const
+{
+    if (jumping_ < 0) return nullptr;
+    return &*std::ranges::find(laws_, jumping_, &WatchedLaw::load);
+}
+
 SwitchingPoints::SwitchingPoints(const ModelTables& tables, const ElementRule& rule, const CalmLaws& calm)
     : tables_(tables), rule_(rule), calm_(calm), path_(tables, rule)
 {

@@ -27,6 +27,8 @@ public:
     double first(const WindowLayout& layout, const NodePositions& nodes, double until);
     /// The load whose force jumped there, when a bend was found last; empty: none was, or none jumps.
     std::string jumping_load() const;
+    /// Its law; null: there is none.
+    const WatchedLaw* jumping_law() const;
 
 private:
     bool is_calm(const WatchedLaw& law) const;

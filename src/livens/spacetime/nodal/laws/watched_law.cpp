@@ -5,6 +5,7 @@
 #include "livens/spacetime/nodal/laws/watched_law.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/model.h"
@@ -30,19 +31,26 @@ WatchedLaw::WatchedLaw(const ModelTables& tables, int load, int row) : tables_(t
 LawState WatchedLaw::at(ElementPath& path, double share, const LawState& from) const
 {
     path.go(share, bodies_);
-    LawState state{share, std::vector<double>(guards_.size()), {}, from.angles};
+    std::vector<double> angles = from.angles;
+    if (load_ >= 0 && !tables_.model->loads()[load_].angles.empty())
+        tables_.loads.turns.follow_of(load_, Configurations(path.X()), angles);
+    LawState state = at(path.at(), path.X(), path.V(), std::move(angles), from);
+    state.share = share;
+    return state;
+}
+
+LawState WatchedLaw::at(Instant instant, const double* X, const double* V, std::vector<double> angles,
+                        const LawState& from) const
+{
+    LawState state{0, std::vector<double>(guards_.size()), {}, std::move(angles)};
     if (load_ >= 0) {
         const Load& load = tables_.model->loads()[load_];
-        if (!load.angles.empty())
-            tables_.loads.turns.follow_of(load_, Configurations(path.X()), state.angles);
-        const LoadArguments arguments =
-            tables_.loads.arguments(load_, path.at(), path.X(), path.V(), state.angles);
+        const LoadArguments arguments = tables_.loads.arguments(load_, instant, X, V, state.angles);
         if (load.guarded) load.guarded(arguments, state.numbers);
         if (has_centre_) state.centre = load.centre(arguments);
     } else {
         const ConstraintRow& row = tables_.model->row(row_);
-        state.numbers[0] =
-            row.guard->value(function_point(row, row.functions[0], 0, Configurations(path.X())));
+        state.numbers[0] = row.guard->value(function_point(row, row.functions[0], 0, Configurations(X)));
     }
     // an angle goes on through half a turn instead of coming back from the other side
     for (std::size_t k = 0; k < from.numbers.size(); ++k)

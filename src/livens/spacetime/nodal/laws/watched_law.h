@@ -29,6 +29,9 @@ public:
 
     /// The state that follows `from` along the path; guards and angles are continued from there.
     LawState at(ElementPath& path, double share, const LawState& from) const;
+    /// The same of bodies that are there, and of angles that were followed.
+    LawState at(Instant instant, const double* X, const double* V, std::vector<double> angles,
+                const LawState& from) const;
     /// Its angles alone, followed to a share.
     std::vector<double> angles_at(ElementPath& path, double share, std::vector<double> from) const;
     /// Whether the force of a load is another behind two states next to each other; `end` is some way behind.
