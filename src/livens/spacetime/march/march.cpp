@@ -248,7 +248,6 @@ Elements March::take(Elements of, const AcceptedElements& closed, const NewtonRe
     if (options_.ends_at_bends && of.size() == 1 && events_.accepted(mesh_.ends[of.first], end)) {
         ++counts_.bends;
         mesh_.bends.push_back(end);
-        if (!window_.monitor().jumping_load().empty()) ++n_jumps_;
     }
     (options_.direction > 0 ? of.first : of.last) += options_.direction * closed.n_elements;
     report_.n_elements += closed.n_elements;
@@ -273,18 +272,9 @@ bool March::goes_on(const NewtonReport& outcome)
         report_.fired = options_.fired(*window_.monitor().so_far());
         if (!report_.fired.empty()) return false;
     }
-    if (options_.controller == nullptr || !options_.ends_at_bends || !slides()) return true;
-    return fail(SolveStatus::not_converged, of_sticking(window_.monitor().jumping_load(), time_));
-}
-
-/// Elements that have been short for long are enough, if the last bend was a jump; those that were short from
-/// the start are told by looks behind jumps, of which there are few however long the march is.
-bool March::slides()
-{
-    if (events_.is_stuck()) return !window_.monitor().jumping_load().empty();
-    if (n_jumps_ < next_jump_) return false;
-    next_jump_ = 2 * n_jumps_;
-    return window_.monitor().slides(mesh_.length(mesh_.n_elements() - 1));
+    if (options_.controller == nullptr || !options_.ends_at_bends || !events_.is_stuck()) return true;
+    const std::string load = window_.monitor().jumping_load();
+    return load.empty() || fail(SolveStatus::not_converged, of_sticking(load, time_));
 }
 
 bool March::split(const Elements& of, const NewtonReport& outcome)
@@ -305,6 +295,7 @@ bool March::refuse(const Elements& of, const AcceptedElements& closed, const New
         return true;
     }
     troubles_.load = closed.load;
+    troubles_.jumps_back = closed.jumps_back;
     if (!closed.load.empty()) report_.steep_load = closed.load;
     if (!closed.contradiction.empty()) ++troubles_.contradictions;
     const bool is_contradictory = troubles_.contradictions > most_contradictions + done_ / 2;
@@ -324,6 +315,7 @@ bool March::stop(const Elements& of)
 {
     if (is_near_singular_end())
         return fail(SolveStatus::not_converged, of_singular_end(troubles_.singular_end));
+    if (troubles_.jumps_back) return fail(SolveStatus::not_converged, of_sticking(troubles_.load, time_));
     std::string message = locking_in_words();
     if (message.empty())
         message = options_.controller != nullptr ? of_vanishing(time_, troubles_.load)

@@ -14,10 +14,11 @@ namespace livens::inline spacetime_internal {
 
 /// Counted on the way.
 struct RetryCounts {
-    int avoided = 0;          ///< nodes too near to a singular position, since an element was closed
-    int shortened = 0;        ///< elements, since one was solved without a tangent
-    int contradictions = 0;   ///< elements at whose ends rows contradict each other
-    std::string load{};       ///< for whose law the last element was refused; empty: for something else
+    int avoided = 0;           ///< nodes too near to a singular position, since an element was closed
+    int shortened = 0;         ///< elements, since one was solved without a tangent
+    int contradictions = 0;    ///< elements at whose ends rows contradict each other
+    std::string load{};        ///< for whose law the last element was refused; empty: for something else
+    bool jumps_back = false;   ///< see AcceptedElements; likewise
     double singular_end = std::numeric_limits<double>::quiet_NaN();   ///< that cannot move; the last one
 };
 
@@ -57,8 +58,6 @@ private:
     Elements take(Elements of, const AcceptedElements& closed, const NewtonReport& outcome);
     /// After a window that was closed: whether all who are asked let the march go on.
     bool goes_on(const NewtonReport& outcome);
-    /// Whether a load jumps where the motion stays.
-    bool slides();
     /// A window that failed as a whole.
     bool split(const Elements& of, const NewtonReport& outcome);
     /// Elements that were not accepted, from the near one on.
@@ -77,9 +76,6 @@ private:
     /// Of the mesh, or as many as it will be if it grows as it did.
     int n_elements() const;
 
-    /// Jumps before slides() looks; then twice as many.
-    static constexpr int first_jump = 32;
-
     Window& window_;
     TimeMesh& mesh_;
     const WindowOptions& options_;
@@ -92,9 +88,8 @@ private:
     std::variant<GivenMesh, AdaptiveElements> partition_;   // in place: many marches are an element long
     Attempt attempt_;
     RetryCounts troubles_;
-    int n_jumps_ = 0, next_jump_ = first_jump;   // met so far, and the one at which slides() looks
-    int done_ = 0;                               // elements
-    double time_ = 0;                            // up to which they are solved
+    int done_ = 0;      // elements
+    double time_ = 0;   // up to which they are solved
 };
 
 }   // namespace livens::inline spacetime_internal

@@ -49,6 +49,7 @@ struct AcceptedElements {
     /// The load whose law decided about the velocity jump: as large as one that goes with what the law did
     /// inside of the element unseen; empty: none.
     std::string load{};
+    bool jumps_back = false;   ///< at its end the law is on the side of a jump that the element has left
 };
 
 /// What conditions at both ends leave open.
@@ -82,9 +83,6 @@ public:
     virtual double bend(double /*until*/) { return std::numeric_limits<double>::infinity(); }
     /// The load whose force jumps there; empty: none was found so far, or it bends.
     virtual std::string jumping_load() const { return ""; }
-    /// Whether the motion slides along that jump from where the element that was closed last ends, which is
-    /// there and this long.
-    virtual bool slides(double /*length*/) { return false; }
     /// The mesh has one element more: `element`, which is not closed, was divided in two.
     virtual void divided(int) {}
     /// What laws of loads did unseen inside of the elements closed so far, in the order of their solution.

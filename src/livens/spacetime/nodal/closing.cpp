@@ -42,6 +42,7 @@ bool NodalWindow::is_believed(ElementCloser& by, int e, const AcceptanceCriteria
 {
     constexpr double infinite = std::numeric_limits<double>::infinity();
     AcceptedElements& closed = by.closed;
+    closed.jumps_back = false;
     closed.loss = criteria.full_rank ? by.checks.rank_loss(system_.nodes(), e) : RankLoss::none;
     closed.is_refused = closed.loss != RankLoss::none;
     if (closed.is_refused) return false;
@@ -60,6 +61,11 @@ bool NodalWindow::is_believed(ElementCloser& by, int e, const AcceptanceCriteria
     if (is_watched && !kernel_.has_followed() && by.checks.leaves(system_, e, by.end))
         closed.velocity_jump = infinite;
     by.unseen = by.checks.look_at_laws(system_, e, by.end, closed);
+    if (std::string load = is_watched ? by.checks.jumps_back(system_, e, by.end) : ""; !load.empty()) {
+        closed.velocity_jump = infinite;
+        closed.load = std::move(load);
+        closed.jumps_back = true;
+    }
     closed.is_refused = !(closed.velocity_jump <= criteria.velocity_jump);
     return !closed.is_refused;
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "livens/diagnostics/largest.h"
 #include "livens/multibody/model.h"
@@ -87,6 +88,26 @@ double ElementChecks::velocity_jump(const NodalSystem& system, int e, const Elem
 bool ElementChecks::leaves(const NodalSystem& system, int e, const ElementEnd& end)
 {
     return branches_.leaves(system.layout(), system.nodes(), end.here().held.rows, e);
+}
+
+/// The joints may take the whole jump: of what it would do to bodies without them a billionth moves them.
+std::string ElementChecks::jumps_back(const NodalSystem& system, int e, ElementEnd& end)
+{
+    constexpr double taken = 1e-9;
+    if (switching_points_.empty()) return {};
+    InstantState& there = end.next();
+    const auto [load, jump] = switching_points_.off_the_way(
+        system.layout(), system.nodes(), e, there.X.data(), end.instant().rates(), there.angles);
+    if (load < 0) return {};
+    // free: F' M^-1 F as if there were no joints; held: with them
+    std::vector<double> twist(there.velocity.size()), scaled(twist), rates(jump.size());
+    tables_.bodies.twist_rows(there.X.data(), there.maps.data(), jump.data(), twist.data());
+    tables_.bodies.to_scaled_rows(there.maps.data(), twist.data(), scaled.data());
+    const double free = std::inner_product(scaled.begin(), scaled.end(), scaled.begin(), 0.0);
+    end.instant().respond(there, jump.data(), twist.data());
+    tables_.bodies.rates_of(there.X.data(), twist.data(), rates.data());
+    const double held = std::inner_product(jump.begin(), jump.end(), rates.begin(), 0.0);
+    return held > taken * taken * free ? tables_.model->loads()[load].name : "";
 }
 
 Unseen ElementChecks::look_at_laws(const NodalSystem& system, int e, ElementEnd& end,

@@ -36,6 +36,9 @@ public:
     double velocity_jump(const NodalSystem& system, int e, const ElementEnd& end, bool refuse_turns) const;
     /// The element has left the branch of the motion.
     bool leaves(const NodalSystem& system, int e, const ElementEnd& end);
+    /// The load whose law is on another side of a jump at the end of an element than its way is there; empty:
+    /// none is, or the jump moves nothing.
+    std::string jumps_back(const NodalSystem& system, int e, ElementEnd& end);
     /// The error of unseen laws is converted into an equivalent velocity jump.
     Unseen look_at_laws(const NodalSystem& system, int e, ElementEnd& end, AcceptedElements& closed);
     RankLoss rank_loss(const Nodes& nodes, int e) const;
@@ -44,7 +47,6 @@ public:
     /// See ElementMonitor.
     double bend(const NodalSystem& system, double until);
     std::string jumping_load() const { return switching_points_.jumping_load(); }
-    const WatchedLaw* jumping_law() const { return switching_points_.jumping_law(); }
 
     /// The element is believed.
     void take(const Nodes& nodes, int e, Unseen&& unseen);

@@ -14,7 +14,6 @@
 #include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/nodal/elimination.h"
-#include "livens/spacetime/nodal/sliding_mode.h"
 
 namespace livens {
 
@@ -219,19 +218,14 @@ bool NodalWindow::begin_conditions(const Guess& guess)
 
 State NodalWindow::at(int element_end) const
 {
+    State state;
+    state.X.resize(tables_.bodies.size());
     const int end = ends_.is_backwards() ? last_ - element_end : element_end - first_;
-    if (end == 0 && is_ready_) return state_here();
-    State state;
-    state.X.resize(tables_.bodies.size());
-    const double* X = system_.nodes().X(end * layout_.degree);
-    for (std::size_t b = 0; b < state.X.size(); ++b) std::copy_n(X + 12 * b, 12, state.X[b].a);
-    return state;
-}
-
-State NodalWindow::state_here() const
-{
-    State state;
-    state.X.resize(tables_.bodies.size());
+    if (end > 0 || !is_ready_) {
+        const double* X = system_.nodes().X(end * layout_.degree);
+        for (std::size_t b = 0; b < state.X.size(); ++b) std::copy_n(X + 12 * b, 12, state.X[b].a);
+        return state;
+    }
     const InstantState& here = end_.here();
     std::vector<double> V(here.X.size());
     tables_.bodies.rates_of(here.X.data(), here.velocity.data(), V.data());
@@ -243,12 +237,6 @@ State NodalWindow::state_here() const
         std::copy_n(V.data() + 12 * b, 12, state.V[b].a);
     }
     return state;
-}
-
-bool NodalWindow::slides(double length)
-{
-    const WatchedLaw* law = checks_.jumping_law();
-    return law != nullptr && livens::slides(tables_, is_sparse(), *law, state_here(), length);
 }
 
 bool NodalWindow::find_first(SolveReport& report)

@@ -58,7 +58,6 @@ private:
     }
     double bend(double until) override { return checks_.bend(system_, until); }
     std::string jumping_load() const override { return checks_.jumping_load(); }
-    bool slides(double length) override;
     void divided(int element) override { record_.divided(element); }
     std::vector<Unseen> take_unseen() override { return checks_.take_unseen(); }
     const Motion* so_far() override { return &record_.so_far(); }
@@ -66,7 +65,6 @@ private:
     /// Whether ends of elements are found by elimination along the joints, see InstantSystem.
     bool is_sparse() const { return kernel_.serves() && ends_.has_state(); }
     int mesh_end(int end) const;
-    State state_here() const;
     void set_momenta(const State& given, std::vector<double>& momenta) const;
     bool begin_conditions(const Guess& guess);
     bool set_state(InstantState& state, const State& given, SolveReport& report);

@@ -25,6 +25,8 @@ constexpr int looks_a_degree = 4;
 constexpr double beside_ends = 0.05;
 /// Of the change from one of the few first looks to the next: what is farther from its places is not near.
 constexpr double far = 2;
+/// Of what a number changes on the way of an element: so far off it the state at the end is another motion.
+constexpr double off = 0.1;
 /// Of the change between two looks: how near a centre comes to zero that passes through it.
 constexpr double is_through = 1e-9;
 
@@ -290,12 +292,6 @@ std::string SwitchingPoints::jumping_load() const
     return jumping_ < 0 ? "" : tables_.model->loads()[jumping_].name;
 }
 
-const WatchedLaw* SwitchingPoints::jumping_law() const
-{
-    if (jumping_ < 0) return nullptr;
-    return &*std::ranges::find(laws_, jumping_, &WatchedLaw::load);
-}
-
 SwitchingPoints::SwitchingPoints(const ModelTables& tables, const ElementRule& rule, const CalmLaws& calm)
     : tables_(tables), rule_(rule), calm_(calm), path_(tables, rule)
 {
@@ -344,6 +340,40 @@ double SwitchingPoints::first(const WindowLayout& layout, const NodePositions& n
         jumping_ = law.jumps(path_, found.before, found.after, found.end) ? law.load() : -1;
     }
     return share;
+}
+
+/// How far a number of a law is out of the piece on which the way ends, of what it changes there.
+double SwitchingPoints::out_of_piece(const WatchedLaw& law, const LawState& last, const LawState& there)
+{
+    double most = 0;
+    for (std::size_t k = 0; k < law.guards().size(); ++k) {
+        const double out = -law.guards()[k].piece_at(last.numbers[k]).margin(there.numbers[k]);
+        if (!(out > 0)) continue;
+        const LawState middle = law.at(path_, 0.5, last), first = law.at(path_, behind_start, middle);
+        const auto [low, high] = std::minmax({first.numbers[k], middle.numbers[k], last.numbers[k]});
+        most = std::max(most, out / (high - low));
+    }
+    return most;
+}
+
+SwitchingPoints::OffTheWay SwitchingPoints::off_the_way(const WindowLayout& layout,
+                                                        const NodePositions& nodes, int e, const double* X,
+                                                        const double* V, const std::vector<double>& angles)
+{
+    const bool is_alone = layout.n_elements() == 1;
+    path_.begin(layout, nodes, e);
+    for (const WatchedLaw& law : laws_) {
+        if (law.load() < 0 || law.guards().empty() || (is_alone && is_calm(law))) continue;
+        LawState near;
+        near.angles = angles;
+        const LawState last = law.at(path_, 1, near);
+        const Instant end{path_.start() + path_.h(), Side::left};
+        if (!(out_of_piece(law, last, law.at(end, X, V, angles, last)) > off)) continue;
+        path_.go(1, law.bodies());
+        std::vector<double> jump = law.jump_between(end, X, {path_.V(), V}, last);
+        if (!jump.empty()) return {law.load(), std::move(jump)};
+    }
+    return {};
 }
 
 }   // namespace livens

@@ -25,13 +25,22 @@ public:
     /// The first share of the only element's length, up to `until` (beyond 1: as it goes on), from which on
     /// laws are on other pieces than just behind its start; infinite: none.
     double first(const WindowLayout& layout, const NodePositions& nodes, double until);
+    /// A load whose law is on another side of a jump at the state at the end of element e than where the way
+    /// of the element ends.
+    struct OffTheWay {
+        int load = -1;              ///< none
+        std::vector<double> jump;   ///< its force there less that on the way, at the jump, 12 numbers a body
+    };
+    /// Of numbers that are off the way by a tenth and more of what they change on it. `angles`: of loads at
+    /// the end, see Turns.
+    OffTheWay off_the_way(const WindowLayout& layout, const NodePositions& nodes, int e, const double* X,
+                          const double* V, const std::vector<double>& angles);
     /// The load whose force jumped there, when a bend was found last; empty: none was, or none jumps.
     std::string jumping_load() const;
-    /// Its law; null: there is none.
-    const WatchedLaw* jumping_law() const;
 
 private:
     bool is_calm(const WatchedLaw& law) const;
+    double out_of_piece(const WatchedLaw& law, const LawState& last, const LawState& there);
 
     const ModelTables& tables_;
     const ElementRule& rule_;

@@ -12,6 +12,13 @@
 
 namespace livens {
 
+namespace {
+
+/// Of the force some way behind: at a bend it may be none.
+constexpr double jump = 1e-6;
+
+}   // namespace
+
 /// Of a load, or, where that is negative, of a row, whose one guard follows a function of its coordinates.
 WatchedLaw::WatchedLaw(const ModelTables& tables, int load, int row) : tables_(tables), load_(load), row_(row)
 {
@@ -75,12 +82,41 @@ LoadForces WatchedLaw::forces(ElementPath& path, const LawState& at) const
     return F;
 }
 
+std::vector<double> WatchedLaw::jump_between(Instant instant, const double* X,
+                                             std::pair<const double*, const double*> V,
+                                             const LawState& first) const
+{
+    std::vector<double> between(12 * tables_.bodies.size());
+    const auto go = [&](double share) -> const double* {
+        for (const int body : bodies_)
+            for (int i = 12 * body; i < 12 * body + 12; ++i)
+                between[i] = V.first[i] + share * (V.second[i] - V.first[i]);
+        return between.data();
+    };
+    const auto is_inside = [&](double share) {
+        const LawState state = at(instant, X, go(share), first.angles, first);
+        for (std::size_t k = 0; k < guards_.size(); ++k)
+            if (!(guards_[k].piece_at(first.numbers[k]).margin(state.numbers[k]) >= 0)) return false;
+        return true;
+    };
+    double inside = 0, outside = 1;
+    for (double middle = 0.5; middle > inside && middle < outside; middle = inside + 0.5 * (outside - inside))
+        (is_inside(middle) ? inside : outside) = middle;
+    std::vector<double> change(between.size()), far(change);
+    tables_.loads.add_one(load_, instant, X, V.second, 1, far.data(), first.angles);
+    tables_.loads.add_one(load_, instant, X, go(outside), 1, change.data(), first.angles);
+    tables_.loads.add_one(load_, instant, X, go(inside), -1, change.data(), first.angles);
+    const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
+    const double of_all = std::abs(std::ranges::max(far, smaller));
+    if (!(std::abs(std::ranges::max(change, smaller)) > jump * of_all)) change.clear();
+    return change;
+}
+
 /// `before` and `after` are as near as numbers are: a force that goes on has not changed there. Rows of
 /// constraints are not taken to jump.
 bool WatchedLaw::jumps(ElementPath& path, const LawState& before, const LawState& after,
                        const LawState& end) const
 {
-    constexpr double jump = 1e-6;   // of the force where the look ends: at a bend it may be none
     if (load_ < 0) return false;
     const LoadForces a = forces(path, before), b = forces(path, after), c = forces(path, end);
     for (std::size_t side = 0; side < a.size(); ++side)

@@ -2,6 +2,7 @@
 // The law of a load or of a row along an element: which of its smooth pieces it is on.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "livens/multibody/loads.h"
@@ -26,6 +27,7 @@ public:
     bool has_centre() const { return has_centre_; }
     const std::vector<Guard>& guards() const { return guards_; }
     int load() const { return load_; }
+    const std::vector<int>& bodies() const { return bodies_; }
 
     /// The state that follows `from` along the path; guards and angles are continued from there.
     LawState at(ElementPath& path, double share, const LawState& from) const;
@@ -36,6 +38,11 @@ public:
     std::vector<double> angles_at(ElementPath& path, double share, std::vector<double> from) const;
     /// Whether the force of a load is another behind two states next to each other; `end` is some way behind.
     bool jumps(ElementPath& path, const LawState& before, const LawState& after, const LawState& end) const;
+    /// Between two velocities of bodies at X, where the second one's numbers are on another piece than those
+    /// of `first`: the force of a load behind the passage less that before, 12 numbers a body; empty: it goes
+    /// on.
+    std::vector<double> jump_between(Instant instant, const double* X,
+                                     std::pair<const double*, const double*> V, const LawState& first) const;
 
 private:
     LoadForces forces(ElementPath& path, const LawState& at) const;
