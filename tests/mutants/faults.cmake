@@ -1085,6 +1085,22 @@ livens_mutant(NAME last_node_unloaded
               TESTS_OF unit_spacetime
               MUST_FAIL MarchKernel.AgreesWithNewtonOnRandomMechanisms)
 
+# Elements whose law is on the other side of a jump at their end are believed.
+livens_mutant(NAME jumps_back_unseen
+              FILE spacetime/nodal/laws/switching_points.cpp
+              OLD [[constexpr double off = 0.1;]]
+              NEW [[constexpr double off = 1e9;]]
+              TESTS_OF reference
+              MUST_FAIL Sliding.ForAShortTimeIsToldToo)
+
+# A number that rounding moves about its place counts as passing it.
+livens_mutant(NAME passages_by_rounding
+              FILE spacetime/nodal/laws/watched_law.cpp
+              OLD [[digits = 64 *]]
+              NEW [[digits = 0 *]]
+              TESTS_OF reference
+              MUST_FAIL Sliding.RestsAtAKinkThatRoundingPasses)
+
 # Nothing is ever near a bend.
 livens_mutant(NAME guards_always_calm
               FILE spacetime/nodal/laws/calm_laws.cpp

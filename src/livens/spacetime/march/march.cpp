@@ -243,6 +243,7 @@ Elements March::take(Elements of, const AcceptedElements& closed, const NewtonRe
     if (attempt_.is_rescued) ++report_.rescued;
     if (outcome.ended_by_rounding) ++counts_.rounded;
     troubles_.avoided = 0;
+    troubles_.slides.clear();
     partition().accepted(of, closed, outcome);
     const double end = mesh_.ends[far(of)];
     if (options_.ends_at_bends && of.size() == 1 && events_.accepted(mesh_.ends[of.first], end)) {
@@ -295,7 +296,7 @@ bool March::refuse(const Elements& of, const AcceptedElements& closed, const New
         return true;
     }
     troubles_.load = closed.load;
-    troubles_.jumps_back = closed.jumps_back;
+    if (outcome.status == SolveStatus::converged) troubles_.slides = closed.jumps_back ? closed.load : "";
     if (!closed.load.empty()) report_.steep_load = closed.load;
     if (!closed.contradiction.empty()) ++troubles_.contradictions;
     const bool is_contradictory = troubles_.contradictions > most_contradictions + done_ / 2;
@@ -306,6 +307,8 @@ bool March::refuse(const Elements& of, const AcceptedElements& closed, const New
         return lock.empty() ? fail(SolveStatus::singular, closed.contradiction)
                             : fail(SolveStatus::not_converged, lock);
     }
+    if (!troubles_.slides.empty())
+        return fail(SolveStatus::not_converged, of_sticking(troubles_.slides, time_));
     const bool is_singular = is_near_singular_end() && may_help(outcome, window_);
     if (outcome.status != SolveStatus::converged && !is_singular) return explain(of, outcome);
     return stop(of);
@@ -315,7 +318,6 @@ bool March::stop(const Elements& of)
 {
     if (is_near_singular_end())
         return fail(SolveStatus::not_converged, of_singular_end(troubles_.singular_end));
-    if (troubles_.jumps_back) return fail(SolveStatus::not_converged, of_sticking(troubles_.load, time_));
     std::string message = locking_in_words();
     if (message.empty())
         message = options_.controller != nullptr ? of_vanishing(time_, troubles_.load)

@@ -14,11 +14,11 @@ namespace livens::inline spacetime_internal {
 
 /// Counted on the way.
 struct RetryCounts {
-    int avoided = 0;           ///< nodes too near to a singular position, since an element was closed
-    int shortened = 0;         ///< elements, since one was solved without a tangent
-    int contradictions = 0;    ///< elements at whose ends rows contradict each other
-    std::string load{};        ///< for whose law the last element was refused; empty: for something else
-    bool jumps_back = false;   ///< see AcceptedElements; likewise
+    int avoided = 0;          ///< nodes too near to a singular position, since an element was closed
+    int shortened = 0;        ///< elements, since one was solved without a tangent
+    int contradictions = 0;   ///< elements at whose ends rows contradict each other
+    std::string load{};       ///< for whose law the last element was refused; empty: for something else
+    std::string slides{};   ///< load that jumps back in the last element that was solved, if that was refused
     double singular_end = std::numeric_limits<double>::quiet_NaN();   ///< that cannot move; the last one
 };
 

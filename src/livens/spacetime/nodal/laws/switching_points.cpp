@@ -52,15 +52,10 @@ private:
     LawState look_there(std::size_t i, const LawState& from);
     double margin(const LawState& look) const;
     bool comes_near(const LawState* three, std::size_t k) const;
-    bool may_pass(const LawState* three, bool are_three) const;
+    bool may_pass(const LawState* three, bool are_three);
     Passage pass(const LawState* three, bool are_three);
     void go_alone(std::size_t i, std::size_t& last, LawState* three);
-    bool is_inside(const LawState& look) const
-    {
-        for (std::size_t k = 0; k < pieces_.size(); ++k)
-            if (!(pieces_[k].margin(look.numbers[k]) >= 0)) return false;
-        return true;
-    }
+    bool is_inside(const LawState& look);
     bool is_calm(const LawState& start);
     Passage bisect(LawState inside, LawState outside);
     Passage graze(const LawState* three);
@@ -73,6 +68,8 @@ private:
     double until_;
     const LooksInLanes* looks_;
     std::vector<Guard::Piece> pieces_;   // of each guard, on which the element begins
+    std::vector<double> rounding_;       // of their numbers, once one is outside
+    LawState before_;                    // the last look before they were, be it by rounding
 };
 
 /// Not even near: by a few looks.
@@ -103,6 +100,20 @@ bool Search::is_calm(const LawState& start)
     return !law_.has_centre() || distance > far * way;
 }
 
+/// A number that stays where rounding moves it has not left: that of a coordinate which rests by symmetry, or
+/// which other joints hold, goes to and fro about its place.
+bool Search::is_inside(const LawState& look)
+{
+    for (std::size_t k = 0; k < pieces_.size(); ++k) {
+        const double margin = pieces_[k].margin(look.numbers[k]);
+        if (margin >= 0) continue;
+        if (std::isnan(margin)) return false;
+        if (rounding_.empty()) rounding_ = law_.rounding(path_, look);
+        if (!(margin >= -rounding_[k])) return false;
+    }
+    return true;
+}
+
 /// The least of all guards; negative outside.
 double Search::margin(const LawState& look) const
 {
@@ -119,6 +130,7 @@ Passage Search::bisect(LawState inside, LawState outside)
 {
     constexpr double spacing = 1e-16;
     Passage passage;
+    if (margin(inside) < 0) inside = before_;
     passage.end = outside;
     const double way = outside.share - inside.share;
     double slack = spacing * std::exp2(std::ceil(std::log2(way / spacing)));
@@ -133,7 +145,7 @@ Passage Search::bisect(LawState inside, LawState outside)
         if (!(std::abs(next - middle) <= most)) next = middle - side * most;
         if (!(next > inside.share && next < outside.share)) next = middle;
         LawState between = look(next, inside);
-        (is_inside(between) ? inside : outside) = std::move(between);
+        (margin(between) >= 0 ? inside : outside) = std::move(between);
     }
     passage.share = outside.share;
     passage.before = std::move(inside);
@@ -223,7 +235,7 @@ LawState Search::look_there(std::size_t i, const LawState& from)
 }
 
 /// Whether pass() may find something.
-bool Search::may_pass(const LawState* three, bool are_three) const
+bool Search::may_pass(const LawState* three, bool are_three)
 {
     if (law_.has_centre() && may_meet_centre(three[1], three[2])) return true;
     for (std::size_t k = 0; are_three && k < pieces_.size(); ++k)
@@ -277,6 +289,7 @@ Passage Search::first(const std::vector<double>& angles)
         const double share = std::min(i < shares_.size() ? shares_[i] : three[1].share + step, until_);
         const bool is_known = looks_ != nullptr && i < shares_.size() && share == shares_[i];
         three[2] = is_known ? look_there(i, three[1]) : look(share, three[1]);
+        if (margin(three[2]) < 0 && margin(three[1]) >= 0) before_ = three[1];
         if (is_known && !may_pass(three, i > 1)) continue;
         if (looks_ != nullptr) go_alone(i, last, alone);
         const Passage found = pass(looks_ != nullptr ? alone : three, i > 1);
@@ -342,18 +355,17 @@ double SwitchingPoints::first(const WindowLayout& layout, const NodePositions& n
     return share;
 }
 
-/// How far a number of a law is out of the piece on which the way ends, of what it changes there.
-double SwitchingPoints::out_of_piece(const WatchedLaw& law, const LawState& last, const LawState& there)
+/// A number of the law is out of the piece on which the way ends, and not by rounding.
+bool SwitchingPoints::is_off(const WatchedLaw& law, const LawState& last, const LawState& there)
 {
-    double most = 0;
     for (std::size_t k = 0; k < law.guards().size(); ++k) {
         const double out = -law.guards()[k].piece_at(last.numbers[k]).margin(there.numbers[k]);
         if (!(out > 0)) continue;
         const LawState middle = law.at(path_, 0.5, last), first = law.at(path_, behind_start, middle);
         const auto [low, high] = std::minmax({first.numbers[k], middle.numbers[k], last.numbers[k]});
-        most = std::max(most, out / (high - low));
+        if (out > off * (high - low) && out > law.rounding(path_, last)[k]) return true;
     }
-    return most;
+    return false;
 }
 
 SwitchingPoints::OffTheWay SwitchingPoints::off_the_way(const WindowLayout& layout,
@@ -368,7 +380,7 @@ SwitchingPoints::OffTheWay SwitchingPoints::off_the_way(const WindowLayout& layo
         near.angles = angles;
         const LawState last = law.at(path_, 1, near);
         const Instant end{path_.start() + path_.h(), Side::left};
-        if (!(out_of_piece(law, last, law.at(end, X, V, angles, last)) > off)) continue;
+        if (!is_off(law, last, law.at(end, X, V, angles, last))) continue;
         path_.go(1, law.bodies());
         std::vector<double> jump = law.jump_between(end, X, {path_.V(), V}, last);
         if (!jump.empty()) return {law.load(), std::move(jump)};

@@ -40,7 +40,7 @@ public:
 
 private:
     bool is_calm(const WatchedLaw& law) const;
-    double out_of_piece(const WatchedLaw& law, const LawState& last, const LawState& there);
+    bool is_off(const WatchedLaw& law, const LawState& last, const LawState& there);
 
     const ModelTables& tables_;
     const ElementRule& rule_;

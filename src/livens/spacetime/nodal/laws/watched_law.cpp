@@ -5,23 +5,23 @@
 #include "livens/spacetime/nodal/laws/watched_law.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
 #include <utility>
 
+#include "livens/diagnostics/largest.h"
 #include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/model.h"
 
 namespace livens {
 
-namespace {
-
-/// Of the force some way behind: at a bend it may be none.
-constexpr double jump = 1e-6;
-
-}   // namespace
-
 /// Of a load, or, where that is negative, of a row, whose one guard follows a function of its coordinates.
-WatchedLaw::WatchedLaw(const ModelTables& tables, int load, int row) : tables_(tables), load_(load), row_(row)
+WatchedLaw::WatchedLaw(const ModelTables& tables, int load, int row)
+    : tables_(tables), load_(load), row_(row), all_(tables.bodies.size())
 {
+    std::iota(all_.begin(), all_.end(), 0);
     if (load >= 0) {
         const Load& of = tables.model->loads()[load];
         guards_ = of.guards;
@@ -65,6 +65,43 @@ LawState WatchedLaw::at(Instant instant, const double* X, const double* V, std::
     return state;
 }
 
+/// Numbers of the state go up or down by 1e-9 of their size, far above rounding, and what that changes is
+/// scaled to some spacings. Rates of all bodies round alike, as joints hand them on, all along an element.
+std::vector<double> WatchedLaw::rounding(ElementPath& path, const LawState& from) const
+{
+    constexpr double apart = 1e-9, digits = 64 * std::numeric_limits<double>::epsilon();
+    double place = tables_.length, rate[2] = {};   // of points, and of directors
+    for (const double share : {0.0, 0.5, 1.0, from.share}) {
+        path.go(share, all_);
+        for (std::size_t i = 0; i < 12 * all_.size(); ++i) {
+            if (i % 12 < 3) place = std::max(place, std::abs(path.X()[i]));
+            double& largest = rate[i % 12 < 3 ? 0 : 1];
+            largest = std::max(largest, std::abs(path.V()[i]));
+        }
+    }
+    const std::vector<double> X(path.X(), path.X() + 12 * all_.size()), V(path.V(), path.V() + X.size());
+    std::vector<double> change(guards_.size());
+    for (std::uint32_t pattern = 1; pattern <= 3; ++pattern) {   // each number up or down
+        std::uint32_t bits = 0x9e3779b9u * pattern;
+        const auto shifted = [&](double size) {
+            bits = bits * 1664525u + 1013904223u;
+            return (bits >> 31 != 0 ? apart : -apart) * size;
+        };
+        std::vector<double> there = X, moving = V;
+        for (const int body : bodies_)
+            for (int i = 0; i < 12; ++i) {
+                there[12 * body + i] += shifted(i < 3 ? place : 1);
+                moving[12 * body + i] += shifted(rate[i < 3 ? 0 : 1]);
+            }
+        const LawState other = at(path.at(), there.data(), moving.data(), from.angles, from);
+        for (std::size_t k = 0; k < change.size(); ++k) {
+            const double now = digits / apart * std::abs(other.numbers[k] - from.numbers[k]);
+            if (std::isfinite(now)) change[k] = std::max(change[k], now);
+        }
+    }
+    return change;
+}
+
 std::vector<double> WatchedLaw::angles_at(ElementPath& path, double share, std::vector<double> from) const
 {
     if (load_ < 0 || tables_.model->loads()[load_].angles.empty()) return from;
@@ -86,6 +123,7 @@ std::vector<double> WatchedLaw::jump_between(Instant instant, const double* X,
                                              std::pair<const double*, const double*> V,
                                              const LawState& first) const
 {
+    constexpr double beside = 1e-3, part = 0.1;   // of all that changes, which at a kink is `beside` of it
     std::vector<double> between(12 * tables_.bodies.size());
     const auto go = [&](double share) -> const double* {
         for (const int body : bodies_)
@@ -102,13 +140,20 @@ std::vector<double> WatchedLaw::jump_between(Instant instant, const double* X,
     double inside = 0, outside = 1;
     for (double middle = 0.5; middle > inside && middle < outside; middle = inside + 0.5 * (outside - inside))
         (is_inside(middle) ? inside : outside) = middle;
-    std::vector<double> change(between.size()), far(change);
-    tables_.loads.add_one(load_, instant, X, V.second, 1, far.data(), first.angles);
-    tables_.loads.add_one(load_, instant, X, go(outside), 1, change.data(), first.angles);
-    tables_.loads.add_one(load_, instant, X, go(inside), -1, change.data(), first.angles);
-    const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
-    const double of_all = std::abs(std::ranges::max(far, smaller));
-    if (!(std::abs(std::ranges::max(change, smaller)) > jump * of_all)) change.clear();
+    const auto difference = [&](double from, double to) {
+        std::vector<double> force(between.size());
+        tables_.loads.add_one(load_, instant, X, go(to), 1, force.data(), first.angles);
+        tables_.loads.add_one(load_, instant, X, go(from), -1, force.data(), first.angles);
+        return force;
+    };
+    const auto largest = [](const std::vector<double>& force) {
+        double most = 0;
+        for (const double f : force) raise_to(most, std::abs(f));
+        return most;
+    };
+    // beside the place itself, where a law like x/abs(x) has no value
+    std::vector<double> change = difference(std::max(0.0, inside - beside), std::min(1.0, outside + beside));
+    if (!(largest(change) > part * largest(difference(0, 1)))) change.clear();
     return change;
 }
 
@@ -117,6 +162,7 @@ std::vector<double> WatchedLaw::jump_between(Instant instant, const double* X,
 bool WatchedLaw::jumps(ElementPath& path, const LawState& before, const LawState& after,
                        const LawState& end) const
 {
+    constexpr double jump = 1e-6;   // of the force where the look ends: at a bend it may be none
     if (load_ < 0) return false;
     const LoadForces a = forces(path, before), b = forces(path, after), c = forces(path, end);
     for (std::size_t side = 0; side < a.size(); ++side)

@@ -34,6 +34,8 @@ public:
     /// The same of bodies that are there, and of angles that were followed.
     LawState at(Instant instant, const double* X, const double* V, std::vector<double> angles,
                 const LawState& from) const;
+    /// How far rounding of the places and rates of bodies there may move each of its numbers.
+    std::vector<double> rounding(ElementPath& path, const LawState& at) const;
     /// Its angles alone, followed to a share.
     std::vector<double> angles_at(ElementPath& path, double share, std::vector<double> from) const;
     /// Whether the force of a load is another behind two states next to each other; `end` is some way behind.
@@ -49,7 +51,7 @@ private:
 
     const ModelTables& tables_;
     int load_, row_;
-    std::vector<int> bodies_;
+    std::vector<int> bodies_, all_;
     std::vector<Guard> guards_;
     bool has_centre_ = false;
 };
