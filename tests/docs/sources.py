@@ -192,6 +192,7 @@ TIES = [
      r"below_blind = ([^,]+), (?=.*?regain = ([^;]+);)regain = ([^;]+);"),
     ("Ends lie $«2\\cdot10^{-14}»$ of the element's length before the bend", f"{TIME}/march/event_locator.h", r"before = ([^;]+);"),
     ("looks at the next element begin $«10^{-7}»$ of its length", f"{NODAL}/laws/switching_points.cpp", r"behind_start = ([^;]+);"),
+    ("After «2048» in succession below", f"{TIME}/march/event_locator.h", r"most_crawling = (\d+);"),
     ("farther out than «64» spacings of the places", f"{NODAL}/laws/watched_law.cpp", r"digits = (\d+) \*"),
     ("to five accuracies from $«10^{-3}»$ to $«10^{-10}»$: all are reached", "tests/reference/bends.cpp",
      r"AnyAccuracyIsReached.*?accuracy : \{([^,]+), .*?, ([^,}]+)\}\)"),

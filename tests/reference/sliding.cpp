@@ -124,6 +124,47 @@ TEST(Sliding, RestsAtAKinkThatRoundingPasses)
               SolveStatus::not_converged);
 }
 
+/// Friction of a vector has no side to be on: what it brings to rest goes on about it in ever so many
+/// elements.
+TEST(Sliding, FrictionInAPlaneIsToldWhereItBringsToRest)
+{
+    const ScenarioResult read = parse_scenario(R"toml(format = 1
+[[body]]
+name = "puck"
+shape = { box = [0.2, 0.1, 0.1] }
+mass = 2
+position = [0, 0, 0]
+velocity = [1.2, 0.5, 0]
+[[joint]]
+name = "table"
+type = "planar"
+between = ["world", "puck"]
+at = [0, 0, 0]
+axis = [0, 0, 1]
+[[sensor]]
+name = "s"
+type = "point"
+body = "puck"
+[[load]]
+name = "friction"
+type = "force"
+body = "puck"
+inputs = { x = "s.vx", y = "s.vy" }
+expression = ["-6*x/sqrt(x^2+y^2)", "-6*y/sqrt(x^2+y^2)", "0"]
+[time]
+end = 2
+accuracy = 1e-4
+)toml",
+                                               "test.toml");
+    const Scenario& s = read.scenario.value();
+    const Solution solution = solve(s.model, {s.model.start()}, s.time, s.method, s.options);
+    EXPECT_EQ(solution.report.status, SolveStatus::not_converged);
+    const std::string& message = solution.report.message;
+    EXPECT_NE(message.find("the law of load 'friction' changes within any longer one"), std::string::npos)
+        << message;
+    EXPECT_NEAR(solution.motion.end(), 1.3 / 3, 0.03);
+}
+
 /// The control: 2 v' = 60 sin(20 t) - 3 sign(v) turns back at once wherever it comes to rest.
 TEST(Sliding, IsNotTakenForPassing)
 {

@@ -33,6 +33,8 @@ public:
     /// Elements have been short for so long that the motion rests on a jump or slides along it, if that is
     /// what bends.
     bool is_stuck() const { return n_tiny_ > most_tiny; }
+    /// For so much longer that they will stay so, if a law is why.
+    bool is_crawling() const { return n_tiny_ > most_crawling; }
 
 private:
     static constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -52,7 +54,7 @@ private:
 
     /// Of the longest element so far, and how many in succession.
     static constexpr double tiny = 1e-3;
-    static constexpr int most_tiny = 300;
+    static constexpr int most_tiny = 300, most_crawling = 2048;
 
     std::vector<double> expected_;   // ascending
     double shortest_, longest_so_far_ = 0;

@@ -33,6 +33,9 @@ constexpr int most_shortened = 3;
 /// Of the duration: a shorter element is solved whatever it costs, and Newton's iteration says why it fails.
 constexpr double short_element = 1e-6;
 
+/// Elements like the last one for the rest of the time, if a law has kept thousands of them short.
+constexpr double most_left = 1e6;
+
 /// Elements whose rows contradict each other before that is believed, beside one for two that were solved.
 constexpr int most_contradictions = 12;
 
@@ -246,7 +249,7 @@ Elements March::take(Elements of, const AcceptedElements& closed, const NewtonRe
     troubles_.slides.clear();
     partition().accepted(of, closed, outcome);
     const double end = mesh_.ends[far(of)];
-    if (options_.ends_at_bends && of.size() == 1 && events_.accepted(mesh_.ends[of.first], end)) {
+    if (of.size() == 1 && events_.accepted(mesh_.ends[of.first], end)) {
         ++counts_.bends;
         mesh_.bends.push_back(end);
     }
@@ -273,9 +276,13 @@ bool March::goes_on(const NewtonReport& outcome)
         report_.fired = options_.fired(*window_.monitor().so_far());
         if (!report_.fired.empty()) return false;
     }
-    if (options_.controller == nullptr || !options_.ends_at_bends || !events_.is_stuck()) return true;
-    const std::string load = window_.monitor().jumping_load();
-    return load.empty() || fail(SolveStatus::not_converged, of_sticking(load, time_));
+    if (options_.controller == nullptr || !events_.is_stuck()) return true;
+    const std::string load = options_.ends_at_bends ? window_.monitor().jumping_load() : "";
+    if (!load.empty()) return fail(SolveStatus::not_converged, of_sticking(load, time_));
+    const double length = mesh_.length(mesh_.n_elements() - 1);
+    const bool is_endless = events_.is_crawling() && std::abs(end_ - time_) > most_left * length;
+    if (!is_endless || report_.steep_load.empty()) return true;
+    return fail(SolveStatus::not_converged, of_crawling(report_.steep_load, time_, length));
 }
 
 bool March::split(const Elements& of, const NewtonReport& outcome)

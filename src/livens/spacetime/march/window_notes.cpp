@@ -114,6 +114,14 @@ std::string of_sticking(const std::string& load, double t)
            "between; try: a smooth law, such as tanh(w/0.001) for the sign of w";
 }
 
+std::string of_crawling(const std::string& load, double t, double length)
+{
+    return "the elements stay as short as " + to_text(length, 2) + " s near t = " + to_text(t, 6) +
+           " s, thousands of them: the law of load '" + load +
+           "' changes within any longer one, as friction v/|v| does where bodies come to rest; try: a law "
+           "that is smooth there, such as v/sqrt(v^2 + 0.001^2)";
+}
+
 std::string of_another_period(double period, double off, double t)
 {
     return "the motion comes back after " + to_text(period, 6) +

@@ -47,6 +47,8 @@ std::string of_singular_end(double t);
 std::string of_locking(const Model& model, const State& first, const State& last);
 /// Where the motion stays at a jump of this load.
 std::string of_sticking(const std::string& load, double t);
+/// Elements of that length, for long.
+std::string of_crawling(const std::string& load, double t, double length);
 
 /// Of a motion that ends as it began after `period`, and one later is off by that, most at t.
 std::string of_another_period(double period, double off, double t);
