@@ -110,8 +110,7 @@ std::string of_sticking(const std::string& load, double t)
 {
     return "sliding mode near t = " + to_text(t, 6) + " s at a discontinuity of load '" + load +
            "', as in ideal dry friction: the law drives the motion back from either side, and has no force "
-           "in "
-           "between; try: a smooth law, such as tanh(w/0.001) for the sign of w";
+           "in between; try: a smooth law, such as tanh(w/0.001) for the sign of w";
 }
 
 std::string of_crawling(const std::string& load, double t, double length)
