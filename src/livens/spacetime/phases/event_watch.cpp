@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
 
 #include "livens/base/text.h"
+#include "livens/diagnostics/rounding.h"
 #include "livens/dynamics/instant/reactions.h"
 
 namespace livens::inline spacetime_internal {
@@ -324,34 +324,24 @@ bool EventWatch::was_beyond(const Motion& motion, std::span<const int> events) c
     return std::ranges::any_of(events, [&](int e) { return slack(e) > 0 && margin(e, before) > 0; });
 }
 
-/// Numbers of the state go up or down by 1e-9 of their size, far above rounding, and what that changes is
-/// scaled to one spacing; by the rate of the condition it is a time. Of n elements sqrt(n) times as much.
+/// One spacing of the state; by the rate of the condition it is a time. Of n elements sqrt(n) times as much.
 double EventWatch::rounding_at_end(const Motion& motion, int event) const
 {
     // Elements are iterated, and their ends looked for, to so much of their motion.
     constexpr double found_to = 1e-13;
-    constexpr double apart = 1e-9, digits = std::numeric_limits<double>::epsilon();
+    constexpr double digits = std::numeric_limits<double>::epsilon();
     const double rate = border_of(motion, std::span(&event, 1)).rate, length = whole_.length();
     const State end = motion.at_end(motion.n_elements());
-    const double here = margin(event, end);
-    double change = 0;
-    for (std::uint32_t pattern = 1; pattern <= 3; ++pattern) {   // each number up or down
+    const double change = changes_by_rounding({margin(event, end)}, [&](const auto& shift) {
         State there = end;
-        std::uint32_t bits = 0x9e3779b9u * pattern;
-        const auto shifted = [&](double size) {
-            bits = bits * 1664525u + 1013904223u;
-            return (bits >> 31 != 0 ? apart : -apart) * size;
-        };
         for (std::size_t b = 0; b < there.X.size(); ++b)
             for (int i = 0; i < 3; ++i)
                 for (int k = 0; k < 4; ++k) {
-                    const double place = k == 0 ? std::max(length, norm(end.X[b].column(0))) : 1;
-                    there.X[b](i, k) += shifted(place);
-                    there.V[b](i, k) += shifted(norm(end.V[b].column(k)));
+                    there.X[b](i, k) += shift(k == 0 ? std::max(length, norm(end.X[b].column(0))) : 1);
+                    there.V[b](i, k) += shift(norm(end.V[b].column(k)));
                 }
-        const double now = std::abs(margin(event, there) - here) / apart;
-        if (std::isfinite(now)) change = std::max(change, now);
-    }
+        return std::vector{margin(event, there)};
+    })[0];
     const double of_state = rate > 0 ? digits * change / rate : 0;
     const int n = motion.n_elements();
     return std::sqrt(static_cast<double>(n)) * (digits * std::abs(end.t) + of_state) +

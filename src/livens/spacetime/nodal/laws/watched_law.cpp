@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <utility>
 
 #include "livens/diagnostics/largest.h"
+#include "livens/diagnostics/rounding.h"
 #include "livens/dynamics/rows/tables.h"
 #include "livens/multibody/model.h"
 
@@ -65,11 +65,10 @@ LawState WatchedLaw::at(Instant instant, const double* X, const double* V, std::
     return state;
 }
 
-/// Numbers of the state go up or down by 1e-9 of their size, far above rounding, and what that changes is
-/// scaled to some spacings. Rates of all bodies round alike, as joints hand them on, all along an element.
+/// Some spacings. Rates of all bodies round alike, as joints hand them on, all along an element.
 std::vector<double> WatchedLaw::rounding(ElementPath& path, const LawState& from) const
 {
-    constexpr double apart = 1e-9, digits = 64 * std::numeric_limits<double>::epsilon();
+    constexpr double digits = 64 * std::numeric_limits<double>::epsilon();
     double place = tables_.length, rate[2] = {};   // of points, and of directors
     for (const double share : {0.0, 0.5, 1.0, from.share}) {
         path.go(share, all_);
@@ -80,25 +79,16 @@ std::vector<double> WatchedLaw::rounding(ElementPath& path, const LawState& from
         }
     }
     const std::vector<double> X(path.X(), path.X() + 12 * all_.size()), V(path.V(), path.V() + X.size());
-    std::vector<double> change(guards_.size());
-    for (std::uint32_t pattern = 1; pattern <= 3; ++pattern) {   // each number up or down
-        std::uint32_t bits = 0x9e3779b9u * pattern;
-        const auto shifted = [&](double size) {
-            bits = bits * 1664525u + 1013904223u;
-            return (bits >> 31 != 0 ? apart : -apart) * size;
-        };
+    std::vector<double> change = changes_by_rounding(from.numbers, [&](const auto& shift) {
         std::vector<double> there = X, moving = V;
         for (const int body : bodies_)
             for (int i = 0; i < 12; ++i) {
-                there[12 * body + i] += shifted(i < 3 ? place : 1);
-                moving[12 * body + i] += shifted(rate[i < 3 ? 0 : 1]);
+                there[12 * body + i] += shift(i < 3 ? place : 1);
+                moving[12 * body + i] += shift(rate[i < 3 ? 0 : 1]);
             }
-        const LawState other = at(path.at(), there.data(), moving.data(), from.angles, from);
-        for (std::size_t k = 0; k < change.size(); ++k) {
-            const double now = digits / apart * std::abs(other.numbers[k] - from.numbers[k]);
-            if (std::isfinite(now)) change[k] = std::max(change[k], now);
-        }
-    }
+        return at(path.at(), there.data(), moving.data(), from.angles, from).numbers;
+    });
+    for (double& now : change) now *= digits;
     return change;
 }
 
