@@ -62,12 +62,15 @@ void InstantState::look_back(const InstantState& earlier, bool forwards)
 {
     has_past = true;
     const double inverse = 1 / (t - earlier.t);
-    const double *v0 = earlier.velocity.data(), *v1 = velocity.data();
-    const double *a0 = earlier.acceleration[forwards ? 1 : 0].data(),
-                 *a1 = acceleration[forwards ? 0 : 1].data();
-    double* __restrict j = jerk.data();
-    double* __restrict s = snap.data();
-    for (std::size_t i = 0; i < velocity.size(); ++i) {
+    const double* __restrict v0 = earlier.velocity.data(), * __restrict v1 = velocity.data();
+    const double* __restrict a0 = earlier.acceleration[forwards ? 1 : 0].data(), * __restrict a1 =
+                                                                                     acceleration[forwards
+                                                                                                      ? 0
+                                                                                                      : 1]
+                                                                                         .data();
+    double* __restrict j = jerk.data(), * __restrict s = snap.data();
+    const std::size_t n = velocity.size();
+    for (std::size_t i = 0; i < n; ++i) {
         const double mean = 0.5 * (a0[i] + a1[i]) - (v1[i] - v0[i]) * inverse;   // of a, less the slope of v
         s[i] = 12 * inverse * inverse * mean;
         j[i] = inverse * (a1[i] - a0[i] + 6 * mean);
@@ -197,7 +200,7 @@ bool InstantSystem::prepare_singular(const InstantState& state)
 /// lambda <- S R^-1 y / weight on the chosen rows; by joints y is what joints.project() says.
 void InstantSystem::scatter(const InstantState& state, double* y, double weight, double* lambda) const
 {
-    std::fill(lambda, lambda + tables_.n_rows(), 0.0);
+    if (tables_.rank < tables_.n_rows()) std::fill(lambda, lambda + tables_.n_rows(), 0.0);
     if (state.held.by_joints) {
         const std::vector<int>& rows = state.held.joints.pattern()->rows();
         for (int c = 0; c < tables_.rank; ++c) lambda[rows[c]] = y[c] / weight;

@@ -113,13 +113,12 @@ void JointFactor::project(double* y, const double* rates, double* mu) const
     const lanes::Pattern& p = pattern_->view();
     const At<1, false> G{values().gradients, nullptr}, factor{values().factor, nullptr};
     double* more = values().work;
-    std::fill_n(mu, p.n_rows, 0.0);
     for (int pass = 0; pass < n_passes_; ++pass) {
         lanes::multiply(p, G, y, nullptr, more);
         for (int r = 0; rates != nullptr && r < p.n_rows; ++r) more[r] -= rates[r];
         lanes::solve(p, factor, more);
         lanes::take_off(p, G, more, y);
-        for (int r = 0; r < p.n_rows; ++r) mu[r] += more[r];
+        for (int r = 0; r < p.n_rows; ++r) mu[r] = (pass == 0 ? 0.0 : mu[r]) + more[r];
     }
 }
 

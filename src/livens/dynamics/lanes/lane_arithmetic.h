@@ -125,21 +125,31 @@ LIVENS_INLINE void raise_to_size(Lanes<W>& a, const Lanes<W>& b)
     }
 }
 
+/// Lane after lane. Not through memory: a single double would then be kept as an integer, too.
+template <int W, class Action>
+LIVENS_INLINE void for_lanes(const Lanes<W>& v, Action&& action)
+{
+    for (int i = 0; i < v.count; ++i) {
+        if constexpr (Lanes<W>::size == 1)
+            action(v.part[i]);
+        else
+            for (int j = 0; j < v.size; ++j) action(v.part[i][j]);
+    }
+}
+
 template <int W>
 double largest(const Lanes<W>& v)
 {
-    double x[W], size = 0;
-    __builtin_memcpy(x, &v, sizeof x);
-    for (int i = 0; i < W; ++i) size = size < x[i] ? x[i] : size;
+    double size = 0;
+    for_lanes(v, [&](double x) LIVENS_LAMBDA { size = size < x ? x : size; });
     return size;
 }
 
 template <int W>
 double sum(const Lanes<W>& v)
 {
-    double x[W], s = 0;
-    __builtin_memcpy(x, &v, sizeof x);
-    for (int i = 0; i < W; ++i) s += x[i];
+    double s = 0;
+    for_lanes(v, [&](double x) LIVENS_LAMBDA { s += x; });
     return s;
 }
 

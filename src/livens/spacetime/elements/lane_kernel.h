@@ -110,15 +110,35 @@ void form_rows(const Pattern& p, const Values& start, const Values& v, const Rul
     }
 }
 
+/// The largest of n numbers by size, and whether all are finite: 0, or no number. In whole registers, however
+/// many lanes there are: they stand one behind the other.
+LIVENS_INLINE double size_of(const double* x, int n, double& finite)
+{
+    constexpr int W = LIVENS_REGISTER;
+    Lanes<W> most = all<W>(0), left = most;
+    int i = 0;
+    for (; i + W <= n; i += W) {
+        const Lanes<W> part = load<W>(x + i);
+        raise_to_size(most, part);
+        left += part - part;
+    }
+    double size = largest(most);
+    finite = sum(left);
+    for (; i < n; ++i) {
+        const double own = __builtin_fabs(x[i]);
+        size = size < own ? own : size;
+        finite += x[i] - x[i];
+    }
+    return size;
+}
+
 template <int W>
 void balance(const Pattern& p, const Values& start, const Values& v, const Rule& rule, bool first,
              Sizes& sizes)
 {
     const At<W, true> G{v.gradients, start.gradients}, factor{v.factor, start.factor};
     form_rows<W>(p, start, v, rule);
-    Lanes<W> size = all<W>(0), finite = size;
-    for (int i = 0; i < p.n_twists; ++i) raise_to_size(size, load<W>(v.rows + i * W));
-    sizes.terms = largest(size);
+    sizes.terms = size_of(v.rows, p.n_twists * W, sizes.finite);
     if (first)
         for (int r = 0; r < p.n_rows; ++r) store(v.impulses + r * W, all<W>(0));
     else
@@ -128,14 +148,7 @@ void balance(const Pattern& p, const Values& start, const Values& v, const Rule&
     take_off(p, G, v.work, v.rows);
     for (int r = 0; r < p.n_rows; ++r)
         store(v.impulses + r * W, load<W>(v.impulses + r * W) + load<W>(v.work + r * W));
-    size = all<W>(0);
-    for (int i = 0; i < p.n_twists; ++i) {
-        const Lanes<W> y = load<W>(v.rows + i * W);
-        raise_to_size(size, y);
-        finite += y - y;
-    }
-    sizes.rows = largest(size);
-    sizes.finite = sum(finite);
+    sizes.rows = size_of(v.rows, p.n_twists * W, sizes.finite);
 }
 
 template <int W>
@@ -248,19 +261,9 @@ template <int W>
 constexpr LoadFunctions loads_of{interpolate_arms<W>, run_loads<W>, share_out<W>, share_columns<W>};
 
 template <int W>
-constexpr Functions functions_of{W,
-                                 extrapolate<W>,
-                                 configure<W>,
-                                 unit_rows<W>,
-                                 factorise<W>,
-                                 interpolate<W>,
-                                 balance<W>,
-                                 propose<W>,
-                                 project<W>,
-                                 move<W>,
-                                 sum_impulses<W>,
-                                 &loads_of<W>,
-                                 &blocks_of};
+constexpr Functions functions_of{
+    W,          extrapolate<W>, configure<W>, unit_rows<W>,    factorise<W>, interpolate<W>, balance<W>,
+    propose<W>, project<W>,     move<W>,      sum_impulses<W>, &loads_of<W>, &blocks_of};
 
 /// For degrees up to 18, with as few lanes as registers have room for.
 template <int W = LIVENS_REGISTER>

@@ -200,8 +200,11 @@ bool ElementEnd::reach(NodalSystem& system, MarchKernel& kernel, int e, const do
         kernel.momentum(layout, here, momentum_.data());
     else
         std::copy_n(momentum, momentum_.size(), momentum_.begin());
-    next.angles = here.angles;
-    for (int a = 1; a <= p; ++a) tables_.loads.turns.follow(Configurations(nodes.X(e * p + a)), next.angles);
+    if (!tables_.loads.turns.empty()) {
+        next.angles = here.angles;
+        for (int a = 1; a <= p; ++a)
+            tables_.loads.turns.follow(Configurations(nodes.X(e * p + a)), next.angles);
+    }
     std::copy_n(nodes.X(A), next.X.size(), next.X.begin());
     std::copy_n(nodes.low(A), next.X.size(), next.X_low.begin());
     if (kernel.is_solved() && is_radau)   // the kernel has no maps of nodes

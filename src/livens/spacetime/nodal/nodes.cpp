@@ -19,10 +19,10 @@ namespace livens {
 
 namespace {
 
-/// to + to_low <- x + x_low + by, without the rounding of the sum [Kahan1965]; entry by entry, so that x may
-/// be `to` itself.
-inline void add_two_sums(const double* x, const double* x_low, const double* __restrict by, double* to,
-                         double* to_low, std::size_t n)
+/// to + to_low <- x + x_low + by, without the rounding of the sum [Kahan1965]; of another node, or set.
+inline void add_two_sums(const double* __restrict x, const double* __restrict x_low,
+                         const double* __restrict by, double* __restrict to, double* __restrict to_low,
+                         std::size_t n)
 {
     for (std::size_t i = 0; i < n; ++i) {
         const double from = x[i], d = by[i] + x_low[i], sum = from + d, back = sum - from;

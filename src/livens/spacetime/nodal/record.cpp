@@ -136,7 +136,7 @@ void Record::end(int place, const InstantState& state, const InstantSystem& syst
     if (place < first_) first_ = place;   // not where there is room, and others write as well
     if (place > last_) last_ = place;
     node(std::min(place, mesh_.n_elements() - 1), place < mesh_.n_elements() ? 0 : degree_, state.X.data());
-    put(m.load_angles, place, state.angles.size(), state.angles.data());
+    if (!state.angles.empty()) put(m.load_angles, place, state.angles.size(), state.angles.data());
     const double *V = system.rates(), *turn = system.centripetal();
     tables_.bodies.times_mass(V, 1.0, work.data());
     put(m.velocities, place, bodies, V);

@@ -52,9 +52,6 @@ void NodalRows::open(const WindowLayout& layout)
 void NodalRows::start_with(const InstantState& first)
 {
     momenta_[0].scaled = first.momentum;
-    double largest = 0;
-    for (const double p : first.momentum) largest = std::max(largest, std::abs(p));
-    start_terms_ = largest;
     if (rule_.points == Points::lobatto) return;
     double* const rates = workspaces_[0].work.data();
     momenta_[0].columns.resize(static_cast<std::size_t>(size_of_node_));
@@ -164,7 +161,8 @@ bool NodalRows::evaluate(const WindowLayout& layout, const Nodes& nodes)
         }
     });
     size_ = 0;
-    terms_ = start_terms_;
+    terms_ = 0;
+    for (const double p : momenta_[0].scaled) terms_ = std::max(terms_, std::abs(p));
     for (const RowWorkspace& one : workspaces_) {
         size_ = std::max(size_, one.size);
         terms_ = std::max(terms_, one.terms);

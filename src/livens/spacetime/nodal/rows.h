@@ -86,7 +86,7 @@ private:
     std::vector<double> impulses_, reduced_;
     std::vector<char> are_finite_;   // of nodes
     std::vector<RowWorkspace> workspaces_;
-    double size_ = 0, terms_ = 0, start_terms_ = 0;
+    double size_ = 0, terms_ = 0;
 };
 
 }   // namespace livens::inline spacetime_internal

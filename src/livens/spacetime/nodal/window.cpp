@@ -80,11 +80,10 @@ bool NodalWindow::open(int first, int last, SolveReport& report)
     layout_.n_numbers = ends_.n_numbers;
     if (!is_ready_ && !begin_front(report)) return false;
     if (layout_.X_last && !set_state(far_, ends_.end, report)) return false;
-    if (layout_.X_first)
-        layout_.angles = end_.here().angles;
-    else
-        layout_.angles =
-            ends_.is_phase() ? tables_.loads.turns.begin(ends_.start) : tables_.loads.turns.begin();
+    if (!tables_.loads.turns.empty())
+        layout_.angles = layout_.X_first    ? end_.here().angles
+                         : ends_.is_phase() ? tables_.loads.turns.begin(ends_.start)
+                                            : tables_.loads.turns.begin();
     system_.open(layout_, layout_.X_first ? &end_.here() : nullptr, layout_.X_last ? &far_ : nullptr);
     if (ends_.has_components()) return true;   // which momenta, is decided with the nodes
     if (!layout_.X_first && layout_.P_first)
