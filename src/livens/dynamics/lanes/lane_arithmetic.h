@@ -125,15 +125,16 @@ LIVENS_INLINE void raise_to_size(Lanes<W>& a, const Lanes<W>& b)
     }
 }
 
-/// Lane after lane. Not through memory: a single double would then be kept as an integer, too.
+/// Lane after lane. A single one not through memory: it would be kept as an integer, too.
 template <int W, class Action>
 LIVENS_INLINE void for_lanes(const Lanes<W>& v, Action&& action)
 {
-    for (int i = 0; i < v.count; ++i) {
-        if constexpr (Lanes<W>::size == 1)
-            action(v.part[i]);
-        else
-            for (int j = 0; j < v.size; ++j) action(v.part[i][j]);
+    if constexpr (W == 1) {
+        action(v.part[0]);
+    } else {
+        double x[W];
+        __builtin_memcpy(x, &v, sizeof x);
+        for (int i = 0; i < W; ++i) action(x[i]);
     }
 }
 

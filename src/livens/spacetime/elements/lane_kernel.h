@@ -78,7 +78,7 @@ LIVENS_INLINE void add_start(const Body& body, const double* rates, const Rule& 
 }
 
 template <int W>
-void form_rows(const Pattern& p, const Values& start, const Values& v, const Rule& rule)
+LIVENS_INLINE void form_rows(const Pattern& p, const Values& start, const Values& v, const Rule& rule)
 {
     const Lanes<W> weights = load<W>(rule.weights);
     const At<W, true> numbers{v.numbers, start.numbers};
@@ -110,21 +110,22 @@ void form_rows(const Pattern& p, const Values& start, const Values& v, const Rul
     }
 }
 
-/// The largest of n numbers by size, and whether all are finite: 0, or no number. In whole registers, however
-/// many lanes there are: they stand one behind the other.
+/// The largest of n numbers by size; of what they are less themselves 0, or no number, is added to `finite`.
+/// They stand one behind the other: fewer lanes than a register has are taken as more.
+template <int W, bool asks_finite>
 LIVENS_INLINE double size_of(const double* x, int n, double& finite)
 {
-    constexpr int W = LIVENS_REGISTER;
-    Lanes<W> most = all<W>(0), left = most;
+    constexpr int B = W < LIVENS_REGISTER ? LIVENS_REGISTER : W;
+    Lanes<B> most = all<B>(0), left = most;
     int i = 0;
-    for (; i + W <= n; i += W) {
-        const Lanes<W> part = load<W>(x + i);
+    for (; i + B <= n; i += B) {
+        const Lanes<B> part = load<B>(x + i);
         raise_to_size(most, part);
-        left += part - part;
+        if constexpr (asks_finite) left += part - part;
     }
     double size = largest(most);
-    finite = sum(left);
-    for (; i < n; ++i) {
+    finite += sum(left);
+    for (; B > W && i < n; ++i) {
         const double own = __builtin_fabs(x[i]);
         size = size < own ? own : size;
         finite += x[i] - x[i];
@@ -138,7 +139,8 @@ void balance(const Pattern& p, const Values& start, const Values& v, const Rule&
 {
     const At<W, true> G{v.gradients, start.gradients}, factor{v.factor, start.factor};
     form_rows<W>(p, start, v, rule);
-    sizes.terms = size_of(v.rows, p.n_twists * W, sizes.finite);
+    sizes.finite = 0;
+    sizes.terms = size_of<W, false>(v.rows, p.n_twists * W, sizes.finite);
     if (first)
         for (int r = 0; r < p.n_rows; ++r) store(v.impulses + r * W, all<W>(0));
     else
@@ -148,7 +150,7 @@ void balance(const Pattern& p, const Values& start, const Values& v, const Rule&
     take_off(p, G, v.work, v.rows);
     for (int r = 0; r < p.n_rows; ++r)
         store(v.impulses + r * W, load<W>(v.impulses + r * W) + load<W>(v.work + r * W));
-    sizes.rows = size_of(v.rows, p.n_twists * W, sizes.finite);
+    sizes.rows = size_of<W, true>(v.rows, p.n_twists * W, sizes.finite);
 }
 
 template <int W>

@@ -58,12 +58,13 @@ void extend(std::vector<T>& values, std::size_t n)
 
 /// Room for `n` entries at `first`. A march forwards writes one behind the other and touches its memory as it
 /// goes: much is not written twice, and little is made room for ahead, since arrays may be longer than what
-/// was written; some pages of it are, which are still near when they are written.
+/// was written; some pages of it are, which are still near when they are written. What is small grows fast.
 template <class T>
 [[gnu::noinline]] void make_room(std::vector<T>& values, std::size_t first, std::size_t n)
 {
-    constexpr std::size_t near = std::size_t{1} << 14;   // bytes
-    const std::size_t few = 8 * n, ahead = std::max(2 * first, first + few);
+    constexpr std::size_t near = std::size_t{1} << 14, small = std::size_t{1} << 16;   // bytes
+    const std::size_t few = 8 * n, times = first * sizeof(T) < small ? 4 : 2,
+                      ahead = std::max(times * first, first + few);
     if (values.capacity() < first + n) values.reserve(ahead);
     extend(values, std::min({ahead, first + std::max(few, near / sizeof(T)), values.capacity()}));
 }
