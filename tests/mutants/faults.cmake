@@ -2271,3 +2271,35 @@ livens_mutant(NAME stop_that_pulls
               NEW [[if (false &&]]
               TESTS_OF unit_dynamics
               MUST_FAIL Impact.LetsGoOfStopsThatWouldPull)
+
+# Conditions that a jump makes true are left to become false first.
+livens_mutant(NAME jumps_make_nothing_true
+              FILE spacetime/phases/event_margins.cpp
+              OLD [[if (!(before[e] <= least && now[e] > least)) continue;]]
+              NEW [[if (now[e] >= least || now[e] < least) continue;]]
+              TESTS_OF unit_io
+              MUST_FAIL EventsByJumps.AreAtTheSampleThatMakesThemTrue)
+
+# Rounding decides what lies on its border behind a jump.
+livens_mutant(NAME jumps_by_rounding
+              FILE spacetime/phases/event_margins.cpp
+              OLD [[if (!(before[e] <= least && now[e] > least)) continue;]]
+              NEW [[if (!(before[e] <= 0 && now[e] > 0)) continue;]]
+              TESTS_OF unit_io
+              MUST_FAIL EventsByJumps.AreAtTheSampleThatMakesThemTrue)
+
+# Where elements end at a passage the event is taken to be there, as if a load had jumped.
+livens_mutant(NAME events_without_search
+              FILE spacetime/phases/event_margins.cpp
+              OLD [[return !has_one(Side::left) && has_one(Side::right);]]
+              NEW [[return has_one(Side::right);]]
+              TESTS_OF unit_io
+              MUST_FAIL DecidedEvents.HaveTheOrderOfStatesAlsoWhereRatesAreAskedFor)
+
+# Samples that fall together but for rounding have a phase between them.
+livens_mutant(NAME near_samples_stay_apart
+              FILE spacetime/phases/events.cpp
+              OLD [[*std::ranges::lower_bound(breaks, t - gap);]]
+              NEW [[*std::ranges::lower_bound(breaks, t - 0 * gap);]]
+              TESTS_OF unit_io
+              MUST_FAIL Controllers.ThatAreSampledTogetherAreAskedOnceAtAnInstant)

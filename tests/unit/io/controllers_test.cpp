@@ -175,6 +175,56 @@ TEST(Controllers, ThatAreSampledAreTheirRecursion)
                 states_in(scenario.model, motion.at(0.01).V)[2].value, 1e-11);
 }
 
+/// 33 times 0.01 s is not 11 times 0.03 s, nor 3 times 0.1 s what is written as 0.3: instants that rounding
+/// alone keeps apart are one, at which each controller is asked once.
+TEST(Controllers, ThatAreSampledTogetherAreAskedOnceAtAnInstant)
+{
+    const std::string two = "inputs = { q = \"pin.angle\" }\nevery = 0.03\n"
+                            "states = { i = \"i + 0.03*(0.5 - q)\" }\noutputs = { u = \"15*i\" }\n"
+                            "[[controller]]\nname = \"fast\"\ninputs = { q = \"pin.angle\", r = \"pid.u\" }\n"
+                            "every = 0.01\nstates = { n = \"n + 1\" }\n"
+                            "outputs = { u = \"20*(0.5 - q) + r\" }\n";
+    for (const std::string time : {"end = 1\naccuracy = 1e-9", "end = 1\nelements = 130"}) {
+        const Scenario scenario = scenario_of(pendulum(two, time, "fast.u"));
+        const SolvedScenario s = solve_scenario(scenario, scenario.options, scenario.prepared);
+        ASSERT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+        const Motion& motion = s.solution.motion;
+        double i = 0, r = 0, farthest = 0;
+        for (int k = 0; k <= 100; ++k) {
+            const State state = motion.at(0.01 * k);
+            const double q = coordinate_value(scenario.model.joints()[0].coordinates[0].coordinate, state.X);
+            if (k % 3 == 0) {
+                r = 15 * i;
+                i += 0.03 * (0.5 - q);
+            }
+            const double expected[] = {i, r, 1.0 + k, 20 * (0.5 - q) + r};
+            const std::vector<NamedState> now = states_in(scenario.model, state.V);
+            ASSERT_EQ(now.size(), 4u);
+            for (std::size_t j = 0; j < 4; ++j)
+                farthest = std::max(farthest, std::abs(now[j].value - expected[j]) / 100);
+        }
+        EXPECT_LT(farthest, 1e-12) << time;
+    }
+}
+
+/// What ends at 0.3 s, beside samples every 0.1 s.
+TEST(Controllers, ThatAreSampledMayMeetWhatEnds)
+{
+    const auto angle_at_end = [](const std::string& until) {
+        const std::string sampled =
+            "inputs = { q = \"pin.angle\" }\nevery = 0.1\noutputs = { u = \"5*(0.5 - q)\" }\n";
+        const Scenario scenario =
+            scenario_of(pendulum(sampled, "end = 1\naccuracy = 1e-9", "pid.u\"\nuntil = \"" + until));
+        const SolvedScenario s = solve_scenario(scenario, scenario.options, scenario.prepared);
+        EXPECT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+        const State state = s.solution.motion.at_end(s.solution.motion.n_elements());
+        return coordinate_value(scenario.model.joints()[0].coordinates[0].coordinate, state.X);
+    };
+    const double at_sample = angle_at_end("0.3 s");
+    EXPECT_NEAR(at_sample, angle_at_end("0.30000001 s"), 1e-6);
+    EXPECT_GT(std::abs(at_sample - angle_at_end("0.31 s")), 1e-3);   // the control: it does matter
+}
+
 /// An integral at rest leaves no error: q = 0.5 and 40 i = 2 c = m g l sin(0.5)/0.4.
 TEST(Controllers, AreAtRestWithTheirBodies)
 {

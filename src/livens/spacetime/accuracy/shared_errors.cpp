@@ -47,11 +47,12 @@ private:
     bool is_hidden_ = false;
 };
 
-/// Element ends where events are.
+/// Element ends where events are: not of those behind the end of a motion that has ended before.
 std::vector<int> event_ends(const Model& model, const Motion& motion)
 {
     std::vector<int> ends;
     for (const double t : model.event_times()) {
+        if (t < motion.start() || t > motion.end()) continue;
         const int end = element_end_at(motion.mesh, snap_to_element_end(motion.mesh, t));
         if (end > 0 && end < motion.n_elements()) ends.push_back(end);
     }

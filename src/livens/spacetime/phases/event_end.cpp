@@ -51,13 +51,15 @@ bool end_at_event(const WatchedPhase& phase, std::vector<int>& fired, Solution& 
 {
     Motion& motion = solved.motion;
     const double start = motion.mesh.ends[motion.n_elements() - 1], end = motion.end();
-    const bool was_beyond = phase.watch.was_beyond(motion, fired);
+    const bool was_beyond = phase.watch.was_beyond(motion, fired),
+               has_jumped = phase.watch.have_jumped(motion, fired);
     double low = start, high = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < most_turns; ++i) {
+    for (int i = 0; i < most_turns && !has_jumped; ++i) {
         const double now = motion.end();
         const EventWatch::Border border = phase.watch.border_of(motion, fired);
         (border.margin > 0 ? high : low) = now;
-        double zero = border.rate > 0 ? now - border.margin / border.rate : low;
+        const double away = border.margin > 0 || std::isinf(high) ? low : high;   // it moves off
+        double zero = border.rate > 0 ? now - border.margin / border.rate : away;
         if (was_beyond && border.rate > 0 && zero <= start) {   // its slack was used up there
             if (motion.n_elements() > 1) {
                 drop_last(motion);

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "livens/base/text.h"
-#include "livens/diagnostics/rounding.h"
 #include "livens/dynamics/instant/reactions.h"
 
 namespace livens::inline spacetime_internal {
@@ -23,8 +22,6 @@ constexpr double behind = 1e-6;
 constexpr double beyond_stop = 1e-14;
 /// Of an element: so far ahead the state has what the polynomial has at its end.
 constexpr double at_once = 0.05;
-/// Of an element: between which rates are differences; and of these what rounding may be.
-constexpr double rate_ways[] = {1e-4, 1e-2}, rounded = 1e-13;
 
 std::vector<double> numbers_of(const std::vector<Matrix34>& all)
 {
@@ -68,8 +65,8 @@ double rounding_of_stop(const Model& model, const Event& event)
 }
 
 EventWatch::EventWatch(const Model& model, ActingModel acting, std::vector<bool> armed, const State& start,
-                       const std::vector<double>& slacks)
-    : whole_(model), acting_(std::move(acting)), armed_(std::move(armed)), start_(start),
+                       double last, const std::vector<double>& slacks)
+    : whole_(model), acting_(std::move(acting)), armed_(std::move(armed)), start_(start), last_(last),
       first_watch_(static_cast<int>(acting_.model.loads().size())),
       slack_(std::make_shared<std::vector<double>>(model.events().size()))
 {
@@ -135,9 +132,10 @@ std::function<void(const LoadArguments&, std::span<double>)> EventWatch::reactio
     if (!refusal_) refusal_ = why_shared(whole_, acting_, mechanism_->tables(), event, start_);
     std::vector<ReactionInput> inputs = event.terms.reactions;
     const std::size_t n_counted = UnwrappedAngles(acting_.model).size();
-    return [mechanism = mechanism_, model = mechanism_model_, joints = acting_.joints, inputs,
-            n_counted](const LoadArguments& at, std::span<double> numbers) {
-        State state{at.at.t, {}, {}};
+    return [mechanism = mechanism_, model = mechanism_model_, joints = acting_.joints, inputs, n_counted,
+            last = last_](const LoadArguments& at, std::span<double> numbers) {
+        const bool is_over = at.at.t >= last;   // the looks behind the end, too
+        State state{is_over ? last : at.at.t, {}, {}};
         for (std::size_t b = 0; b < at.X.size(); ++b) {
             if (b == 1) continue;   // the world
             state.X.push_back(at.X[b]);
@@ -145,7 +143,7 @@ std::function<void(const LoadArguments&, std::span<double>)> EventWatch::reactio
         }
         std::vector<double> angles;
         if (at.angles.size() >= n_counted) angles.assign(at.angles.end() - n_counted, at.angles.end());
-        const Side side = at.at.side == Side::left ? Side::left : Side::right;
+        const Side side = is_over || at.at.side == Side::left ? Side::left : Side::right;
         const bool is_known = mechanism->accelerate(state, angles, side);
         for (std::size_t k = 0; k < inputs.size(); ++k) {
             const auto j = std::ranges::find(joints, inputs[k].joint);
@@ -161,14 +159,14 @@ std::function<void(const LoadArguments&, std::span<double>)> EventWatch::reactio
             Matrix34 F{};
             for (const ConstraintRow& row : joint.rows)
                 F -= *multiplier++ *
-                     constraint_gradient(frozen(row, {at.at.t, side}), state.X).of(joint.second);
+                     constraint_gradient(frozen(row, {state.t, side}), state.X).of(joint.second);
             numbers[k] = number_of(joint_reaction(joint, state.X[joint.second], F), inputs[k]);
         }
     };
 }
 
 /// Without the slack that the guard of an open stop has taken off, for which elements end.
-std::vector<double> EventWatch::terms_at(int event, const State& state) const
+std::vector<double> EventWatch::terms_at(int event, const State& state, Side side) const
 {
     const Load& watch = acting_.model.loads()[first_watch_ + event];
     std::vector<double> angles = state.angles,
@@ -176,15 +174,16 @@ std::vector<double> EventWatch::terms_at(int event, const State& state) const
                             whole_.events()[static_cast<std::size_t>(event)].terms.n_terms));
     const std::vector<double> X = numbers_of(state.X), V = numbers_of(state.V);
     if (!angles.empty()) loads_->turns.follow(Configurations(X.data()), angles);
-    watch.guarded(loads_->arguments(first_watch_ + event, {state.t}, X.data(), V.data(), angles), terms);
+    watch.guarded(loads_->arguments(first_watch_ + event, {state.t, side}, X.data(), V.data(), angles),
+                  terms);
     if (slack(event) > 0) terms[0] += slack(event);
     return terms;
 }
 
 /// Conditions are sums (or) of products (and): the largest of the least.
-double EventWatch::margin(int event, const State& state) const
+double EventWatch::margin(int event, const State& state, Side side) const
 {
-    const std::vector<double> terms = terms_at(event, state);
+    const std::vector<double> terms = terms_at(event, state, side);
     double margin = -std::numeric_limits<double>::infinity();
     for (const std::vector<int>& all : whole_.events()[static_cast<std::size_t>(event)].terms.when) {
         double least = std::numeric_limits<double>::infinity();
@@ -296,56 +295,6 @@ bool EventWatch::comes_at_once(const Motion& motion, int event) const
     const Border border = border_of(motion, std::span(&event, 1));
     return border.rate > 0 &&
            slack(event) - border.margin < at_once * motion.mesh.length(motion.n_elements() - 1) * border.rate;
-}
-
-EventWatch::Border EventWatch::border_of(const Motion& motion, std::span<const int> events) const
-{
-    const auto first = [&](const State& state) {
-        double largest = -std::numeric_limits<double>::infinity();
-        for (const int e : events) largest = std::max(largest, margin(e, state));
-        return largest;
-    };
-    const int n = motion.n_elements();
-    const State end = motion.at_end(n);
-    const double here = first(end);
-    double change = 0, way = 0;
-    for (const double share : rate_ways) {   // the nearer one, unless it is but rounding
-        const State later = beside(motion, n, share, false);
-        way = later.t - end.t;
-        change = first(later) - here;
-        if (std::abs(change) > rounded) break;
-    }
-    return {here, change / way};
-}
-
-bool EventWatch::was_beyond(const Motion& motion, std::span<const int> events) const
-{
-    const State before = motion.at_end(motion.n_elements() - 1);
-    return std::ranges::any_of(events, [&](int e) { return slack(e) > 0 && margin(e, before) > 0; });
-}
-
-/// One spacing of the state; by the rate of the condition it is a time. Of n elements sqrt(n) times as much.
-double EventWatch::rounding_at_end(const Motion& motion, int event) const
-{
-    // Elements are iterated, and their ends looked for, to so much of their motion.
-    constexpr double found_to = 1e-13;
-    constexpr double digits = std::numeric_limits<double>::epsilon();
-    const double rate = border_of(motion, std::span(&event, 1)).rate, length = whole_.length();
-    const State end = motion.at_end(motion.n_elements());
-    const double change = changes_by_rounding({margin(event, end)}, [&](const auto& shift) {
-        State there = end;
-        for (std::size_t b = 0; b < there.X.size(); ++b)
-            for (int i = 0; i < 3; ++i)
-                for (int k = 0; k < 4; ++k) {
-                    there.X[b](i, k) += shift(k == 0 ? std::max(length, norm(end.X[b].column(0))) : 1);
-                    there.V[b](i, k) += shift(norm(end.V[b].column(k)));
-                }
-        return std::vector{margin(event, there)};
-    })[0];
-    const double of_state = rate > 0 ? digits * change / rate : 0;
-    const int n = motion.n_elements();
-    return std::sqrt(static_cast<double>(n)) * (digits * std::abs(end.t) + of_state) +
-           found_to * std::max(motion.mesh.length(n - 1), n > 1 ? motion.mesh.length(n - 2) : 0);
 }
 
 std::vector<int> EventWatch::holding(const Motion& motion, std::span<const int> events) const

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -25,10 +26,11 @@ double rounding_of_stop(const Model& model, const Event& event);
 class EventWatch {
 public:
     /// `armed`: of each event of the model, whether something would happen. `start`: of the phase; what its
-    /// angles lack of those that events count has not turned yet. `slacks`: of open stops, how many times
-    /// what rounding has beyond them is not looked at; empty: once.
+    /// angles lack of those that events count has not turned yet. `last`: where it ends at the latest; forces
+    /// of loads that begin or end there are no part of it. `slacks`: of open stops, how many times what
+    /// rounding has beyond them is not looked at; empty: once.
     EventWatch(const Model& model, ActingModel acting, std::vector<bool> armed, const State& start,
-               const std::vector<double>& slacks = {});
+               double last = std::numeric_limits<double>::infinity(), const std::vector<double>& slacks = {});
 
     /// For another phase with the same joints and armed events, which ask for no reactions.
     void begin_again(const State& start, const std::vector<double>& slacks);
@@ -57,14 +59,21 @@ public:
     Border border_of(const Motion& motion, std::span<const int> events) const;
     /// Whether one of them was beyond its border where the last element began, within its slack.
     bool was_beyond(const Motion& motion, std::span<const int> events) const;
+    /// Whether they have come true with forces of loads that jump at the end of a motion, and not before.
+    bool have_jumped(const Motion& motion, std::span<const int> events) const;
     /// What rounding of the state at the end of a motion makes of the instant of a condition, s.
     double rounding_at_end(const Motion& motion, int event) const;
+    /// How far conditions are from changing in a state; infinite for stops, which are told when they are met
+    /// or have to pull, and for those that are not armed.
+    std::vector<double> margins(const State& state) const;
+    /// Those that a jump has made true where the phase begins, whose margins were these before it.
+    std::vector<int> come_by_jump(const std::vector<double>& before) const;
     /// Those of them that are true just behind the end; the nearest, if none is.
     std::vector<int> holding(const Motion& motion, std::span<const int> events) const;
     /// Whether the condition of an event holds in the state where the phase begins.
     bool holds_now(int event) const { return holds_at(event, start_); }
     /// How far a condition is from changing in a state, in units of its formulas: positive where it is true.
-    double margin(int event, const State& state) const;
+    double margin(int event, const State& state, Side side = Side::middle) const;
     /// What of the margin of an open stop is rounding; 0 for all else.
     double slack(int event) const { return (*slack_)[static_cast<std::size_t>(event)]; }
     /// Angles on the way to a configuration.
@@ -77,13 +86,15 @@ private:
     bool is_number_along(const Motion& motion, int event) const;
     State beside(const Motion& motion, int end, double share, bool by_slope) const;
     bool comes_at_once(const Motion& motion, int event) const;
-    std::vector<double> terms_at(int event, const State& state) const;
+    double rounding_in(const State& state, int event) const;
+    std::vector<double> terms_at(int event, const State& state, Side side = Side::middle) const;
     bool holds_at(int event, const State& state) const;
 
     const Model& whole_;
     ActingModel acting_;
     std::vector<bool> armed_;
     State start_;
+    double last_;
     int first_watch_;   // among the loads
     std::shared_ptr<const Model> mechanism_model_;
     std::shared_ptr<SettledInstant> mechanism_;   // null: nothing asks for reactions

@@ -92,10 +92,12 @@ std::vector<double> events_inside(const Model& model, double start, double end)
 
 std::vector<double> phase_ends(const Model& model, const Time& time)
 {
-    const double start = start_of(time), end = end_of(time);
+    const double start = start_of(time), end = end_of(time), gap = nearest_ends * (end - start);
     std::vector<double> ends{start};
+    const std::vector<double> breaks = model.load_breaks();
     for (const double t : events_inside(model, start, end)) {
-        double at = t;
+        // Instants that rounding keeps apart are one, as 3 times 0.1 s and 0.3 s are: the first of them.
+        double at = *std::ranges::lower_bound(breaks, t - gap);
         if (const auto* mesh = std::get_if<TimeMesh>(&time))
             // A mesh has merged near instants; the phase ends where the element does.
             at = *std::ranges::min_element(mesh->ends, {}, [t](double e) { return std::abs(e - t); });

@@ -64,8 +64,10 @@ private:
         const double middle = motion.mesh.ends[element] + 0.5 * motion.mesh.length(element);
         State start = motion.at_end(element);
         start.angles = angles;
+        const std::vector<double> ends = model.event_times();
+        const auto next = std::ranges::upper_bound(ends, middle);
         return EventWatch(model, acting_at(model, middle), std::vector<bool>(model.events().size(), true),
-                          start);
+                          start, next != ends.end() ? *next : motion.end());
     }
 
     double rate(int event, State state, double h) const

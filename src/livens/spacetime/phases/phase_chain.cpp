@@ -80,9 +80,16 @@ private:
         std::vector<double> ends{};       // where events have ended phases
         std::vector<double> slack{};      // of each event, see EventWatch
         std::vector<double> rounding{};   // of instants of events, where the phase has ended with them
+        std::vector<double> margins{};    // of conditions where it has ended, see EventWatch
     };
 
     double nearest() const { return nearest_ends * (known_.back() - known_.front()); }
+    /// Where a phase ends at the latest: what is known to happen where it begins has happened.
+    double next_known(double first) const
+    {
+        const auto next = std::ranges::upper_bound(known_, first + nearest());
+        return next != known_.end() ? *next : known_.back();
+    }
     const Model& decided(Way& at) const { return at.model.decided(at.decisions); }
     /// What formulas say at an instant: those that read reactions see the joints that act by then.
     template <class Question>
@@ -91,11 +98,30 @@ private:
         return reads_reactions(stated_) ? question(decided(at)) : question(stated_);
     }
 
+    /// What a jump makes true where a phase begins, a sample, an impact or what begins to act, happens there,
+    /// and may make more true. False: the motion ends.
+    bool follow_jump(Way& at, double last, Solution& whole) const
+    {
+        while (at.model.watch() != nullptr && at.first > known_.front()) {
+            const EventWatch& watch = *at.model.watch();
+            const std::vector<int> fired = watch.come_by_jump(at.margins);
+            if (fired.empty()) break;
+            State& start = at.problem.conditions.start;
+            at.margins = watch.margins(start);
+            if (!act(at, fired, start, whole)) {
+                if (at.jumps) jump_at_end(whole.motion, stated_, start.V);
+                return false;
+            }
+            if (!begin(at, last, whole)) return false;
+        }
+        return true;
+    }
+
     /// False: the motion ends, and the report says why, unless an event has ended it.
     bool run_phase(Way& at, double accuracy, Solution& whole) const
     {
-        const double last = *std::ranges::upper_bound(known_, at.first);
-        if (!begin(at, last, whole)) return false;
+        const double last = next_known(at.first);
+        if (!begin(at, last, whole) || !follow_jump(at, last, whole)) return false;
         EventWatch* const watch = at.model.watch();
         if (watch != nullptr) {
             at.problem.conditions.start = watch->start();
@@ -131,6 +157,7 @@ private:
             next.report.message = watch->lost_in_words(next.motion);
         }
         State reached = next.motion.at_end(next.motion.n_elements());   // with angles that events count
+        if (watch != nullptr) at.margins = margins_of(*watch, reached, fired);
         widen(next.motion, stated_, acting);
         whole.method = next.method;
         whole.estimate_seconds += next.estimate_seconds;
@@ -149,6 +176,16 @@ private:
         at.problem.conditions.start = std::move(reached);
         at.options.initial = StartPolicy::project;   // an end state holds its joints to rounding
         return goes_on;
+    }
+
+    /// Of conditions where a phase has ended, before anything jumps; those that have fired are true.
+    static std::vector<double> margins_of(const EventWatch& watch, const State& reached,
+                                          const std::vector<int>& fired)
+    {
+        std::vector<double> margins = watch.margins(reached);
+        for (const int e : fired)
+            margins[static_cast<std::size_t>(e)] = std::numeric_limits<double>::infinity();
+        return margins;
     }
 
     /// False: reactions are not unique any more, and the report says so.

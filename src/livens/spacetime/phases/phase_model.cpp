@@ -38,7 +38,8 @@ std::optional<Complaint> PhaseModel::begin(const Decisions& decisions, double fi
             armed.push_back(!is_idle && decisions.is_armed(event.action, first));
             reads_reactions_ = reads_reactions_ || (armed.back() && !event.terms.reactions.empty());
         }
-        watch_ = std::make_unique<EventWatch>(stated_, std::move(acting_), std::move(armed), start, slack);
+        watch_ =
+            std::make_unique<EventWatch>(stated_, std::move(acting_), std::move(armed), start, last, slack);
         if (watch_->refusal()) return watch_->refusal();
     }
     joints_ = std::move(joints);
