@@ -2280,26 +2280,26 @@ livens_mutant(NAME jumps_make_nothing_true
               TESTS_OF unit_io
               MUST_FAIL EventsByJumps.AreAtTheSampleThatMakesThemTrue)
 
-# Rounding decides what lies on its border behind a jump.
-livens_mutant(NAME jumps_by_rounding
-              FILE spacetime/phases/event_margins.cpp
-              OLD [[if (!(before[e] <= least && now[e] > least)) continue;]]
-              NEW [[if (!(before[e] <= 0 && now[e] > 0)) continue;]]
-              TESTS_OF unit_io
-              MUST_FAIL EventsByJumps.AreAtTheSampleThatMakesThemTrue)
-
-# Where elements end at a passage the event is taken to be there, as if a load had jumped.
-livens_mutant(NAME events_without_search
-              FILE spacetime/phases/event_margins.cpp
-              OLD [[return !has_one(Side::left) && has_one(Side::right);]]
-              NEW [[return has_one(Side::right);]]
-              TESTS_OF unit_io
-              MUST_FAIL DecidedEvents.HaveTheOrderOfStatesAlsoWhereRatesAreAskedFor)
-
 # Samples that fall together but for rounding have a phase between them.
 livens_mutant(NAME near_samples_stay_apart
               FILE spacetime/phases/events.cpp
               OLD [[*std::ranges::lower_bound(breaks, t - gap);]]
               NEW [[*std::ranges::lower_bound(breaks, t - 0 * gap);]]
               TESTS_OF unit_io
-              MUST_FAIL Controllers.ThatAreSampledTogetherAreAskedOnceAtAnInstant)
+              MUST_FAIL Controllers.ThatAreSampledMayMeetWhatEnds)
+
+# Short elements, which end where a condition becomes false, tell by themselves what comes behind them.
+livens_mutant(NAME looks_by_short_elements
+              FILE spacetime/phases/event_watch.cpp
+              OLD [[const double way = behind * length;]]
+              NEW [[const double way = behind * motion.mesh.length(std::max(end - 1, 0));]]
+              TESTS_OF unit_io
+              MUST_FAIL DirectionsOfEvents.ConditionsBecomeTrueWhereTheyRiseAlone)
+
+# The slope of a short element's polynomial says that a condition rises.
+livens_mutant(NAME rising_by_slope
+              FILE spacetime/phases/event_watch.cpp
+              OLD [[margin(e, look) > margin(e, end) && comes_at_once(so_far, e);]]
+              NEW [[comes_at_once(so_far, e);]]
+              TESTS_OF unit_io
+              MUST_FAIL DirectionsOfEvents.ConditionsBecomeTrueWhereTheyRiseAlone)

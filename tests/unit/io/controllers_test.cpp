@@ -210,19 +210,23 @@ TEST(Controllers, ThatAreSampledTogetherAreAskedOnceAtAnInstant)
 /// What ends at 0.3 s, beside samples every 0.1 s.
 TEST(Controllers, ThatAreSampledMayMeetWhatEnds)
 {
-    const auto angle_at_end = [](const std::string& until) {
+    const auto angle_at_end = [](const std::string& until, const std::string& family) {
         const std::string sampled =
             "inputs = { q = \"pin.angle\" }\nevery = 0.1\noutputs = { u = \"5*(0.5 - q)\" }\n";
         const Scenario scenario =
-            scenario_of(pendulum(sampled, "end = 1\naccuracy = 1e-9", "pid.u\"\nuntil = \"" + until));
+            scenario_of(pendulum(sampled, "end = 1\naccuracy = 1e-9\n[method]\nfamily = \"" + family + "\"",
+                                 "pid.u\"\nuntil = \"" + until));
         const SolvedScenario s = solve_scenario(scenario, scenario.options, scenario.prepared);
         EXPECT_TRUE(s.solution.report.converged()) << s.solution.report.message;
         const State state = s.solution.motion.at_end(s.solution.motion.n_elements());
         return coordinate_value(scenario.model.joints()[0].coordinates[0].coordinate, state.X);
     };
-    const double at_sample = angle_at_end("0.3 s");
-    EXPECT_NEAR(at_sample, angle_at_end("0.30000001 s"), 1e-6);
-    EXPECT_GT(std::abs(at_sample - angle_at_end("0.31 s")), 1e-3);   // the control: it does matter
+    for (const std::string family : {"lobatto", "radau"}) {
+        const double at_sample = angle_at_end("0.3 s", family);
+        EXPECT_NEAR(at_sample, angle_at_end("0.30000001 s", family), 1e-6);
+        EXPECT_GT(std::abs(at_sample - angle_at_end("0.31 s", family)),
+                  1e-3);   // the control: it does matter
+    }
 }
 
 /// An integral at rest leaves no error: q = 0.5 and 40 i = 2 c = m g l sin(0.5)/0.4.

@@ -2,7 +2,9 @@
 // Conditions that become true through a jump: a sample, an impact, an event, a load that begins to pull.
 // Their instants are those of what jumps.
 #include <cmath>
+#include <numbers>
 
+#include "livens/base/text.h"
 #include "livens/multibody/controllers.h"
 #include "livens/spacetime/solve.h"
 #include "unit/io/swinging_rod.h"
@@ -156,6 +158,49 @@ TEST(EventsByJumps, AreWhereALoadBeginsToPull)
             ASSERT_EQ(times.size(), 1u) << pull << how;
             EXPECT_NEAR(times[0], 0.3, 1e-12);
         }
+}
+
+/// A mass on a spring whose rate is v cos(w t): elements end wherever it passes the border, also where the
+/// condition becomes false, and short ones behind tell no direction by their polynomials.
+TEST(DirectionsOfEvents, ConditionsBecomeTrueWhereTheyRiseAlone)
+{
+    const struct {
+        double v, k;
+        char sign;
+        double border, end;
+        std::string how;
+    } cases[] = {{1, 65.1, '>', -0.1, 6, "accuracy = 1e-6\n[method]\nfamily = \"lobatto\""},
+                 {1, 11.8, '>', 0, 6, "accuracy = 1e-8\n[method]\nfamily = \"lobatto\""},
+                 {1, 10.4, '<', -0.31, 6, "accuracy = 1e-4\n[method]\nfamily = \"lobatto\""},
+                 {1, 28.1, '>', 0.43, 6, "elements = 200\n[method]\nfamily = \"radau\""},
+                 {1, 38.2, '<', -0.56, 6, "elements = 150\n[method]\nfamily = \"radau\""},
+                 {1.7821682679383737, 76.99706976462166, '>', -1.670225872522151, 5.853640341297627,
+                  "accuracy = 1e-4\n[method]\nfamily = \"lobatto\""},
+                 {1.6343493053480884, 55.78443701002028, '<', -0.4745810489655287, 2.6034422111321875,
+                  "accuracy = 1e-4"},
+                 {1, 39.3955032040296, '>', 0.2604859677121458, 3.226450774163981, "accuracy = 1e-6"},
+                 {0.752495329223319, 42.31524265689517, '>', 0.38160151082502186, 6.454066985937944,
+                  "accuracy = 1e-6"},
+                 {1, 59.864834780015826, '<', 0.3066521861045426, 4.445670068427605, "accuracy = 1e-8"}};
+    for (const auto& one : cases) {
+        const SolvedScenario s = solved(
+            "format = 1\nbody = [{ name = \"b\", mass = 1, inertia = [0.1, 0.1, 0.1] }]\n[[joint]]\n"
+            "name = \"j\"\ntype = \"prismatic\"\nbetween = [\"world\", \"b\"]\nat = [0, 0, 0]\n"
+            "axis = [1, 0, 0]\nrate = " +
+            to_text(one.v, 17) + "\nstiffness = " + to_text(one.k, 17) + "\n" +
+            event("e", "j.displacement_rate " + std::string(1, one.sign) + " " + to_text(one.border, 17)) +
+            "[start]\ninitial = \"project\"\n[time]\nend = " + to_text(one.end, 17) + "\n" + one.how + "\n");
+        const double w = std::sqrt(one.k), first = std::acos(one.border / one.v),
+                     turn = 2 * std::numbers::pi;   // of the phase
+        std::vector<double> expected;               // it falls at `first` and rises at a turn less that
+        for (int n = 0; n < 20; ++n) {
+            const double t = (n * turn + (one.sign == '<' ? first : turn - first)) / w;
+            if (t < one.end) expected.push_back(t);
+        }
+        const std::vector<double> times = times_of(s);
+        ASSERT_EQ(times.size(), expected.size()) << one.k << " " << one.how;
+        for (std::size_t k = 0; k < times.size(); ++k) EXPECT_NEAR(times[k], expected[k], 1e-4);
+    }
 }
 
 }   // namespace

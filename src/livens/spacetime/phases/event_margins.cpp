@@ -112,4 +112,12 @@ std::vector<int> EventWatch::come_by_jump(const std::vector<double>& before) con
     return found;
 }
 
+void EventWatch::keep(const std::vector<int>& events, const std::vector<double>& before)
+{
+    for (const int e : events) {
+        const double change = margin(e, start_) - before[static_cast<std::size_t>(e)];
+        if (change >= 0 || -change <= many_digits * rounding_in(start_, e)) held_.at_start.push_back(e);
+    }
+}
+
 }   // namespace livens::inline spacetime_internal

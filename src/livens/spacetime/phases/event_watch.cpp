@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "livens/base/text.h"
+#include "livens/diagnostics/largest.h"
 #include "livens/dynamics/instant/reactions.h"
 
 namespace livens::inline spacetime_internal {
@@ -18,6 +19,8 @@ namespace {
 
 /// Of an element: so far behind an instant a condition has changed that changes there.
 constexpr double behind = 1e-6;
+/// Elements of which the longest tells how far that is.
+constexpr int recent = 32;
 /// Of the scale of its row: what leaves a stop, or slides along it, is beyond it by rounding.
 constexpr double beyond_stop = 1e-14;
 /// Of an element: so far ahead the state has what the polynomial has at its end.
@@ -66,7 +69,7 @@ double rounding_of_stop(const Model& model, const Event& event)
 
 EventWatch::EventWatch(const Model& model, ActingModel acting, std::vector<bool> armed, const State& start,
                        double last, const std::vector<double>& slacks)
-    : whole_(model), acting_(std::move(acting)), armed_(std::move(armed)), start_(start), last_(last),
+    : whole_(model), acting_(std::move(acting)), armed_(std::move(armed)), start_(start), times_{last},
       first_watch_(static_cast<int>(acting_.model.loads().size())),
       slack_(std::make_shared<std::vector<double>>(model.events().size()))
 {
@@ -114,7 +117,7 @@ void EventWatch::begin_again(const State& start, const std::vector<double>& slac
     start_.angles.resize(loads_->turns.size(), 0.0);
     take(slacks);
     lost_ = -1;
-    held_.clear();
+    held_ = {};
 }
 
 void EventWatch::take(const std::vector<double>& slacks)
@@ -133,7 +136,7 @@ std::function<void(const LoadArguments&, std::span<double>)> EventWatch::reactio
     std::vector<ReactionInput> inputs = event.terms.reactions;
     const std::size_t n_counted = UnwrappedAngles(acting_.model).size();
     return [mechanism = mechanism_, model = mechanism_model_, joints = acting_.joints, inputs, n_counted,
-            last = last_](const LoadArguments& at, std::span<double> numbers) {
+            last = times_.last](const LoadArguments& at, std::span<double> numbers) {
         const bool is_over = at.at.t >= last;   // the looks behind the end, too
         State state{is_over ? last : at.at.t, {}, {}};
         for (std::size_t b = 0; b < at.X.size(); ++b) {
@@ -223,6 +226,24 @@ State EventWatch::beside(const Motion& motion, int end, double share, bool by_sl
     return state;
 }
 
+/// By accelerations of the state, so far that rounding does not decide: elements that end at passages may be
+/// short, but not all of some in succession.
+State EventWatch::just_behind(const Motion& motion, int end) const
+{
+    double length = times_.length;
+    for (int e = std::max(end - recent, 0); e < std::max(end, 1); ++e)
+        raise_to(length, motion.mesh.length(e));
+    const double way = behind * length;
+    State state = motion.at_end(end);
+    const Matrix34* A = motion.accelerations.data() + (2 * end + 1) * state.X.size();
+    state.t += way;
+    for (std::size_t b = 0; b < state.X.size(); ++b) {
+        state.X[b] += way * state.V[b] + 0.5 * way * way * A[b];
+        state.V[b] += way * A[b];
+    }
+    return state;
+}
+
 bool EventWatch::is_open_stop(int event) const
 {
     const EventAction& action = whole_.events()[static_cast<std::size_t>(event)].action;
@@ -269,22 +290,28 @@ std::vector<int> EventWatch::fired(const Motion& so_far)
             lost_ = e;
             return {e};
         }
-    if (held_.empty()) {
-        const State start = beside(so_far, 0, behind, false);
+    if (held_.at_end.empty()) {
+        const State start = just_behind(so_far, 0);
         // What is open has not been met yet, though rounding may have it beyond the stop it has just left.
-        for (int e = 0; e < n_events; ++e) held_.push_back(!is_open_stop(e) && holds_at(e, start));
+        for (int e = 0; e < n_events; ++e)
+            held_.at_end.push_back(!is_open_stop(e) &&
+                                   (std::ranges::count(held_.at_start, e) > 0 || holds_at(e, start)));
     }
-    const State now = beside(so_far, n, behind, false), by_slope = beside(so_far, n, behind, true);
+    const State end = so_far.at_end(n), now = just_behind(so_far, n),
+                beside_end = beside(so_far, n, behind, false), by_slope = beside(so_far, n, behind, true);
     for (int e = 0; e < n_events; ++e) {
         const auto is_beyond = [&](const State& state) {
             return slack(e) > 0 ? margin(e, state) > slack(e) : holds_at(e, state);
         };
-        const bool holds_now = is_beyond(now);
-        // The polynomial has it, the state will: its zero lies in the jump between both.
-        const bool comes =
-            !holds_now && !held_[e] && armed_[e] && is_beyond(by_slope) && comes_at_once(so_far, e);
-        if ((holds_now && !held_[e] && armed_[e]) || comes) found.push_back(e);
-        held_[e] = holds_now;
+        // stops may follow each other within any time, and are places: rounding is in their slack
+        const State& look = slack(e) > 0 ? beside_end : now;
+        const bool holds_now = is_beyond(look);
+        // The polynomial has it, the state will: its zero lies in the jump between both. Of a short element
+        // the slope knows nothing of where the state goes.
+        const bool comes = !holds_now && !held_.at_end[e] && armed_[e] && is_beyond(by_slope) &&
+                           margin(e, look) > margin(e, end) && comes_at_once(so_far, e);
+        if ((holds_now && !held_.at_end[e] && armed_[e]) || comes) found.push_back(e);
+        held_.at_end[e] = holds_now;
     }
     return found;
 }
@@ -299,10 +326,11 @@ bool EventWatch::comes_at_once(const Motion& motion, int event) const
 
 std::vector<int> EventWatch::holding(const Motion& motion, std::span<const int> events) const
 {
-    const State now = beside(motion, motion.n_elements(), behind, false);
+    const int n = motion.n_elements();
+    const State now = just_behind(motion, n), near = beside(motion, n, behind, false);
     std::vector<int> all;
     for (const int e : events)
-        if (holds_at(e, now)) all.push_back(e);
+        if (holds_at(e, slack(e) > 0 ? near : now)) all.push_back(e);
     if (!all.empty()) return all;
     // Where rounding decides, the one that is nearest.
     const State end = motion.at_end(motion.n_elements());

@@ -21,6 +21,17 @@ namespace livens::inline spacetime_internal {
 /// coordinate.
 double rounding_of_stop(const Model& model, const Event& event);
 
+/// Where a phase ends at the latest, and how long elements before it were, s.
+struct PhaseTimes {
+    double last, length = 0;
+};
+
+/// Whether each event is true at the last end; empty: at the start, where these are in any case.
+struct HeldEvents {
+    std::vector<bool> at_end{};
+    std::vector<int> at_start{};
+};
+
 /// The model of a phase with a load for each event that watches for it: elements end where conditions may
 /// change, as they do where laws bend. After each element the state at its end tells what has come true.
 class EventWatch {
@@ -68,6 +79,11 @@ public:
     std::vector<double> margins(const State& state) const;
     /// Those that a jump has made true where the phase begins, whose margins were these before it.
     std::vector<int> come_by_jump(const std::vector<double>& before) const;
+    /// Of those that have ended the phase before with these margins: what no jump has taken back is true
+    /// where this one begins, on whichever side of its border rounding has it.
+    void keep(const std::vector<int>& events, const std::vector<double>& before);
+    /// Elements before the phase were so long, s.
+    void follow_elements_of(double length) { times_.length = length; }
     /// Those of them that are true just behind the end; the nearest, if none is.
     std::vector<int> holding(const Motion& motion, std::span<const int> events) const;
     /// Whether the condition of an event holds in the state where the phase begins.
@@ -85,6 +101,7 @@ private:
     bool is_open_stop(int event) const;
     bool is_number_along(const Motion& motion, int event) const;
     State beside(const Motion& motion, int end, double share, bool by_slope) const;
+    State just_behind(const Motion& motion, int end) const;
     bool comes_at_once(const Motion& motion, int event) const;
     double rounding_in(const State& state, int event) const;
     std::vector<double> terms_at(int event, const State& state, Side side = Side::middle) const;
@@ -94,7 +111,7 @@ private:
     ActingModel acting_;
     std::vector<bool> armed_;
     State start_;
-    double last_;
+    PhaseTimes times_;
     int first_watch_;   // among the loads
     std::shared_ptr<const Model> mechanism_model_;
     std::shared_ptr<SettledInstant> mechanism_;   // null: nothing asks for reactions
@@ -102,7 +119,7 @@ private:
     std::unique_ptr<LoadTables> loads_;
     std::shared_ptr<std::vector<double>> slack_;   // of each event: it is looked for so far behind its border
     int lost_ = -1;
-    std::vector<bool> held_;   // of each event, at the last end
+    HeldEvents held_;
 };
 
 }   // namespace livens::inline spacetime_internal

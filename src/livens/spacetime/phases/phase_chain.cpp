@@ -80,7 +80,9 @@ private:
         std::vector<double> ends{};       // where events have ended phases
         std::vector<double> slack{};      // of each event, see EventWatch
         std::vector<double> rounding{};   // of instants of events, where the phase has ended with them
-        std::vector<double> margins{};    // of conditions where it has ended, see EventWatch
+        // Where it has ended, before anything jumped: what came true, and margins of all conditions.
+        std::vector<int> fired{};
+        std::vector<double> margins{};
     };
 
     double nearest() const { return nearest_ends * (known_.back() - known_.front()); }
@@ -102,6 +104,10 @@ private:
     /// and may make more true. False: the motion ends.
     bool follow_jump(Way& at, double last, Solution& whole) const
     {
+        const std::vector<int> came = std::exchange(at.fired, {});
+        const std::vector<double> before = at.margins;
+        for (const int e : came)   // has come true
+            at.margins[static_cast<std::size_t>(e)] = std::numeric_limits<double>::infinity();
         while (at.model.watch() != nullptr && at.first > known_.front()) {
             const EventWatch& watch = *at.model.watch();
             const std::vector<int> fired = watch.come_by_jump(at.margins);
@@ -114,6 +120,9 @@ private:
             }
             if (!begin(at, last, whole)) return false;
         }
+        if (at.model.watch() == nullptr) return true;
+        at.model.watch()->keep(came, before);
+        at.model.watch()->follow_elements_of(at.length);
         return true;
     }
 
@@ -157,7 +166,8 @@ private:
             next.report.message = watch->lost_in_words(next.motion);
         }
         State reached = next.motion.at_end(next.motion.n_elements());   // with angles that events count
-        if (watch != nullptr) at.margins = margins_of(*watch, reached, fired);
+        at.fired = fired;
+        if (watch != nullptr) at.margins = watch->margins(reached);
         widen(next.motion, stated_, acting);
         whole.method = next.method;
         whole.estimate_seconds += next.estimate_seconds;
@@ -176,16 +186,6 @@ private:
         at.problem.conditions.start = std::move(reached);
         at.options.initial = StartPolicy::project;   // an end state holds its joints to rounding
         return goes_on;
-    }
-
-    /// Of conditions where a phase has ended, before anything jumps; those that have fired are true.
-    static std::vector<double> margins_of(const EventWatch& watch, const State& reached,
-                                          const std::vector<int>& fired)
-    {
-        std::vector<double> margins = watch.margins(reached);
-        for (const int e : fired)
-            margins[static_cast<std::size_t>(e)] = std::numeric_limits<double>::infinity();
-        return margins;
     }
 
     /// False: reactions are not unique any more, and the report says so.
