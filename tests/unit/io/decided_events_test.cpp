@@ -251,6 +251,28 @@ TEST(DecidedEvents, HaveOneSecondSolutionWhereItIsEnough)
     EXPECT_LE(again.solution.estimate.largest, 1e-5);
 }
 
+/// A slide that a weld catches where it stands as stated: until then its start is not held by the weld.
+TEST(DecidedEvents, JointsThatDoNotActYetLeaveTheStartFree)
+{
+    const auto text = [](const std::string& from) {
+        return "format = 1\nbody = [{ name = \"b\", mass = 1, inertia = [0.1, 0.1, 0.1] }]\n"
+               "[[joint]]\nname = \"j\"\ntype = \"prismatic\"\nbetween = [\"world\", \"b\"]\n"
+               "at = [0, 0, 0]\naxis = [1, 0, 0]\n[[joint]]\nname = \"k\"\ntype = \"weld\"\n"
+               "between = [\"world\", \"b\"]\nat = [0, 0, 0]\n" +
+               from +
+               "[start]\ncoordinates = [{ joint = \"j\", value = -0.2, rate = 1 }]\n"
+               "[time]\nend = 1\naccuracy = 1e-9\n";
+    };
+    for (const std::string from : {"\"j.displacement > 0\"", "0.2"}) {
+        const SolvedScenario s = solved(text("restitution = 0\nfrom = " + from + "\n"));
+        ASSERT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+        const Motion& motion = s.solution.motion;
+        EXPECT_NEAR(motion.at(0.1).X[0](0, 0), -0.1, 1e-9);
+        EXPECT_NEAR(motion.at_end(motion.n_elements()).X[0](0, 0), 0, 1e-9);
+    }
+    EXPECT_NE(find(read(text("")), "start-coordinate"), nullptr);   // the control: it acts from the start on
+}
+
 TEST(DecidedEvents, AreRefusedByName)
 {
     const auto refused = [](const std::string& text, const char* code) {

@@ -151,8 +151,10 @@ Chosen choose(const Model& model, const std::vector<Led>& all, std::span<const M
     Model with = led_model(model, all, X, Law::hold);
     const std::vector<int> held = add_held(with, X, stated);
     const Model led = frozen(with, {t});
-    std::vector<int> joints(static_cast<std::size_t>(model.n_rows())), coordinates(all.size());
-    std::iota(joints.begin(), joints.end(), 0);
+    std::vector<int> joints, coordinates(all.size());   // rows; joints that do not act yet hold nothing
+    for (int j = 0; j < static_cast<int>(model.joints().size()); ++j)
+        for (std::size_t k = 0; model.joints()[j].acts_at(t) && k < model.joints()[j].rows.size(); ++k)
+            joints.push_back(model.first_row(j) + static_cast<int>(k));
     std::iota(coordinates.begin(), coordinates.end(), model.n_rows());
     Chosen chosen{row_rank(led, X, joints).independent, {}};
     FreeDirections free(led, X, chosen.rows);
@@ -276,7 +278,7 @@ std::vector<Matrix34> fitting_rates(const Model& model, const std::vector<Led>& 
                                     const std::vector<StatedVelocity>& held)
 {
     const auto is_wanted = [](const Led& led) { return led.has_rate; };
-    const Chosen chosen = choose(model, all, state.X, 0, is_wanted, held);
+    const Chosen chosen = choose(model, all, state.X, state.t, is_wanted, held);
     Model led = led_model(model, all, state.X, Law::turn);
     const std::vector<int> rows = add_held(led, state.X, held);
     const Model now = frozen(led, {0});
@@ -335,7 +337,7 @@ MovedStart dynamics_internal::move_start_with_laws(const Model& model,
     std::vector<Led> all = all_coordinates(model, wanted);
 
     const auto is_wanted = [](const Led& led) { return led.has_value || led.has_rate; };
-    const Chosen chosen = choose(model, all, begin.X, 0, is_wanted);
+    const Chosen chosen = choose(model, all, begin.X, t, is_wanted);
     for (const std::size_t i : chosen.kept) moved.kept.push_back(name_of(model, all[i]));
     moved.left_free = freedoms(model) - static_cast<int>(chosen.rows.size());
     const Model led = led_model(model, all, begin.X, Law::go);
