@@ -29,8 +29,7 @@ namespace livens {
 namespace {
 
 constexpr double step = 0.1;   // of a coordinate, rad or lengths of the model
-// A thousand turns, which take some 63,000 steps.
-constexpr double farthest = 2000 * std::numbers::pi;
+constexpr double farthest = 2000 * std::numbers::pi;   // a thousand turns take some 63,000 steps
 constexpr int most_halvings = 12;
 constexpr double noticed = 1e-9;   // change of a stated velocity, of the largest
 
@@ -152,9 +151,8 @@ Chosen choose(const Model& model, const std::vector<Led>& all, std::span<const M
     const std::vector<int> held = add_held(with, X, stated);
     const Model led = frozen(with, {t});
     std::vector<int> joints, coordinates(all.size());   // rows; joints that do not act yet hold nothing
-    for (int j = 0; j < static_cast<int>(model.joints().size()); ++j)
-        for (std::size_t k = 0; model.joints()[j].acts_at(t) && k < model.joints()[j].rows.size(); ++k)
-            joints.push_back(model.first_row(j) + static_cast<int>(k));
+    for (int r = 0; r < model.n_rows(); ++r)
+        if (model.joints()[model.row_joint(r)].acts_at(t)) joints.push_back(r);
     std::iota(coordinates.begin(), coordinates.end(), model.n_rows());
     Chosen chosen{row_rank(led, X, joints).independent, {}};
     FreeDirections free(led, X, chosen.rows);
