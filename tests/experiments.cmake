@@ -8,9 +8,9 @@ if(LIVENS_BUILD_PROGRAM AND LIVENS_SLOW_TESTS)
         get_filename_component(name ${folder} NAME)
         add_test(NAME experiments.${name} COMMAND ${livens_python} -B ${folder}/run --short
                  --livens $<TARGET_FILE:livens> --output ${PROJECT_BINARY_DIR}/paper_short/${name})
-        set_tests_properties(experiments.${name} PROPERTIES LABELS slow TIMEOUT 300 COST 60)
+        set_tests_properties(experiments.${name} PROPERTIES LABELS slow TIMEOUT 900 COST 60)
     endforeach()
     add_test(NAME experiments.controls COMMAND ${livens_python} -B
              ${PROJECT_SOURCE_DIR}/experiments/controls/run --livens $<TARGET_FILE:livens>)
-    set_tests_properties(experiments.controls PROPERTIES LABELS "slow;controls" TIMEOUT 300 COST 90)
+    set_tests_properties(experiments.controls PROPERTIES LABELS "slow;controls" TIMEOUT 900 COST 90)
 endif()

@@ -2303,3 +2303,19 @@ livens_mutant(NAME rising_by_slope
               NEW [[comes_at_once(so_far, e);]]
               TESTS_OF unit_io
               MUST_FAIL DirectionsOfEvents.ConditionsBecomeTrueWhereTheyRiseAlone)
+
+# Bends of stated elements between both ends are looked for once, and where they are found is not asked again.
+livens_mutant(NAME stated_bends_are_believed
+              FILE spacetime/accuracy/stated_bends.cpp
+              OLD [[if (moved <= settled || (moved]]
+              NEW [[if (moved < 1 || (moved]]
+              TESTS_OF reference
+              MUST_FAIL Bends.BetweenBothEndsTheEstimateHolds)
+
+# A jump beside a state is a slope of a law that reads reactions.
+livens_mutant(NAME jumps_by_reactions_are_slopes
+              FILE dynamics/instant/reaction_laws.cpp
+              OLD [[return off > alike * shorter * most;]]
+              NEW [[return false;]]
+              TESTS_OF unit_io
+              MUST_FAIL ReactionLaws.ThatJumpWhereTheMotionBeginsAreNoDampers)

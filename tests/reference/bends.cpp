@@ -204,6 +204,72 @@ TEST(Bends, OnStatedElementsTheEstimateHolds)
     }
 }
 
+/// What is true of a motion between two places: the rate at the start that leads from one to the other, by
+/// the secant through motions that leave beside the one that was found.
+struct Between {
+    SolveStatus status;
+    double error, estimate;   // of the place in the middle
+};
+
+Between between(Oscillator o, const std::string& time, bool end_at_bends = true)
+{
+    constexpr double duration = 0.8;
+    o.end = duration;
+    const double target = static_cast<double>(o.at_end().x);
+    const auto known = [](double x) {
+        return "known = { \"slide.displacement\" = " + to_text(x) + " }\n";
+    };
+    std::string text = "format = 1\n" + o.scenario(time);
+    const std::size_t start = text.find("[start]"), load = text.find("[[load]]");
+    text.replace(start, load - start,
+                 "[start]\ncoordinates = [{ joint = \"slide\", value = " + to_text(o.x) + " }]\n" + known(o.x) +
+                     "[end]\n" + known(target));
+    const ScenarioResult read = parse_scenario(text, "test.toml");
+    for (const Diagnostic& d : read.diagnostics) EXPECT_EQ(d.message, "");
+    const Scenario& s = read.scenario.value();
+    SolveOptions options = s.options;
+    options.end_at_bends = options.look_at_laws = end_at_bends;
+    const Solution solution = solve(s.model, {s.conditions}, s.time, s.method, options);
+    if (!solution.report.reached_end()) return {solution.report.status, 0, 0};
+    Real v = solution.motion.at_end(0).V[0](0, 0);
+    const auto missed = [&](Real rate) {
+        Oscillator other = o;
+        other.v = static_cast<double>(rate);
+        return other.at_end().x - target;
+    };
+    for (int i = 0; i < 4; ++i) {
+        const Real off = missed(v), step = 1e-5L;
+        v -= off * step / (missed(v + step) - off);
+    }
+    o.v = static_cast<double>(v);
+    o.end = 0.5 * duration;
+    const double x = solution.motion.at(o.end).X[0](0, 0);
+    return {solution.report.status, static_cast<double>(std::abs(x - o.at_end().x)) / s.model.length(),
+            solution.estimate.largest};
+}
+
+/// Elements that are solved together end there in further tries; those that step over bends are the control.
+/// Where tries do not settle the motion is suspect.
+TEST(Bends, BetweenBothEndsTheEstimateHolds)
+{
+    Oscillators oscillators(14);
+    int n_good = 0, n_farther = 0;
+    for (int i = 0; i < 4 * n_kinds; ++i) {
+        const Oscillator o = oscillators.next(i % n_kinds);
+        for (const char* elements : {"elements = 10\n", "elements = 40\n"}) {
+            const Between b = between(o, elements), over = between(o, elements, false);
+            if (b.status == SolveStatus::converged) {
+                ++n_good;
+                EXPECT_LT(b.error, 5 * b.estimate + 1e-12) << o.scenario(elements);
+                EXPECT_LT(b.error, 1e-5) << o.scenario(elements);
+                n_farther += over.error > 1e-5;
+            }
+        }
+    }
+    EXPECT_GT(n_good, 34) << "of 40";
+    EXPECT_GT(n_farther, 20);
+}
+
 /// Likewise with radau, but for forces that jump: its last load point lies at the bend, which the second
 /// solution may pass there, so that some are refused.
 TEST(Bends, ElementsOfRadauEndThere)

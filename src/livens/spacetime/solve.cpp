@@ -21,6 +21,7 @@
 #include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/accuracy/accuracy.h"
+#include "livens/spacetime/accuracy/stated_bends.h"
 #include "livens/spacetime/ensemble.h"
 #include "livens/spacetime/found.h"
 #include "livens/spacetime/phases/phases.h"
@@ -74,7 +75,9 @@ Solution solve_phase(const Model& model, const Problem& problem, const Time& tim
                    ? solve_to_accuracy(model, problem, *tried.ends, std::get<Span>(time), method, options)
                    : solve_between_ends(model, problem, *tried.ends, std::get<Span>(time), method, options);
     }
-    return solve_mesh(model, problem, *mesh, *tried.ends, method, options);
+    return problem.conditions.has_state()
+               ? solve_mesh(model, problem, *mesh, *tried.ends, method, options)
+               : solve_with_bends(model, problem, *mesh, *tried.ends, method, options);
 }
 
 Solution solve_all_time(const Model& model, const Problem& problem, const Time& time, const Method& method,

@@ -6,6 +6,7 @@
 
 #include "livens/multibody/controllers.h"
 #include "livens/spacetime/solve.h"
+#include "livens/statics/frequencies.h"
 #include "unit/io/swinging_rod.h"
 
 namespace livens::reaction_laws_test {
@@ -47,6 +48,22 @@ double error_of(const std::string& text)
 TEST(ReactionLaws, RubAsTheirEquationsSay)
 {
     EXPECT_LT(error_of(pendulum("end = 2\naccuracy = 1e-9")), 1e-8);
+}
+
+/// A pendulum swings up against its weight and stands still for an instant at the start, where friction
+/// jumps: the jump is no damper that radau would be taken for. Rounding says on which side of it a state is.
+TEST(ReactionLaws, ThatJumpWhereTheMotionBeginsAreNoDampers)
+{
+    const std::string jumps = "-0.3*0.05*pin.force*sign(pin.angle_rate)";
+    const Scenario scenario = scenario_of(pendulum("end = 2\naccuracy = 1e-8", jumps));
+    const HighestFrequencies found = highest_frequencies(scenario.model, scenario.model.start());
+    EXPECT_LT(found.dampers.rate, 1) << "1/s";
+    const SolvedScenario s = solve_scenario(scenario, scenario.options, scenario.prepared);
+    EXPECT_TRUE(s.solution.report.converged()) << s.solution.report.message;
+    EXPECT_TRUE(std::holds_alternative<Lobatto>(s.solution.method));
+    const Scenario steep =
+        scenario_of(pendulum("end = 2", "-0.3*0.05*pin.force*tanh(pin.angle_rate/1e-4)"));
+    EXPECT_GT(highest_frequencies(steep.model, steep.model.start()).dampers.rate, 100) << "negative control";
 }
 
 /// Order 2p, which multipliers of nodes would not give.

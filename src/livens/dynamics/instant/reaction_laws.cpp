@@ -77,7 +77,46 @@ struct ByReactions {
         }
     }
 
-    /// By differences: Newton's iteration asks for it, and what it leaves out costs a step.
+    /// One of the numbers of its bodies.
+    struct Entry {
+        std::size_t body = 0;
+        bool is_rate = false;
+        int j = 0;
+    };
+
+    /// What a step along it adds to the forces.
+    LoadForces change(const LoadArguments& at, const LoadForces& here, const Entry& by, double step) const
+    {
+        LoadArguments beside = at;
+        (by.is_rate ? beside.V : beside.X)[by.body].a[by.j] += step;
+        LoadForces there{};
+        forces(beside, there);
+        for (std::size_t b = 0; b < 2; ++b) there[b] -= here[b];
+        return there;
+    }
+
+    /// Whether a change that is much of the forces does not become less as the step does: at a jump, on which
+    /// side of it a state is may be a matter of rounding.
+    bool jumps(const LoadArguments& at, const LoadForces& here, const Entry& by, double step,
+               const LoadForces& changed) const
+    {
+        constexpr double much = 1e-3, shorter = 0.25, alike = 0.5;
+        double most = 0, size = 0, off = 0;
+        for (std::size_t b = 0; b < 2; ++b)
+            for (int i = 0; i < 12; ++i) {
+                size = std::max(size, std::abs(here[b].a[i]));
+                most = std::max(most, std::abs(changed[b].a[i]));
+            }
+        if (!(most > much * size)) return false;
+        const LoadForces less = change(at, here, by, shorter * step);
+        for (std::size_t b = 0; b < 2; ++b)
+            for (int i = 0; i < 12; ++i)
+                off = std::max(off, std::abs(less[b].a[i] - shorter * changed[b].a[i]));
+        return off > alike * shorter * most;
+    }
+
+    /// By differences: Newton's iteration asks for it, and what it leaves out costs a step. A jump beside the
+    /// state is no slope, however short the step: then the other side is taken, and none between two jumps.
     void tangent(const LoadArguments& at, LoadTangent& out) const
     {
         LoadForces here{};
@@ -86,15 +125,17 @@ struct ByReactions {
             if (bodies[c] == world) continue;
             for (const bool is_rate : {false, true})
                 for (int j = 0; j < 12; ++j) {
-                    LoadArguments beside = at;
-                    double& number = is_rate ? beside.V[c].a[j] : beside.X[c].a[j];
-                    const double step = 1e-6 * std::max(1.0, std::abs(number));
-                    number += step;
-                    LoadForces there{};
-                    forces(beside, there);
+                    const Entry by{c, is_rate, j};
+                    double step = 1e-6 * std::max(1.0, std::abs((is_rate ? at.V : at.X)[c].a[j]));
+                    LoadForces changed = change(at, here, by, step);
+                    if (jumps(at, here, by, step, changed)) {
+                        step = -step;
+                        changed = change(at, here, by, step);
+                        if (jumps(at, here, by, step, changed)) continue;
+                    }
                     for (std::size_t b = 0; b < 2; ++b)
                         for (int i = 0; i < 12; ++i)
-                            (is_rate ? out.V : out.X)[b][c](i, j) += (there[b].a[i] - here[b].a[i]) / step;
+                            (is_rate ? out.V : out.X)[b][c](i, j) += changed[b].a[i] / step;
                 }
         }
     }

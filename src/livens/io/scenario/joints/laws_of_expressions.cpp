@@ -150,8 +150,8 @@ void warn_of_kinks(Builder& builder, const Section& section, std::string_view ke
             builder.findings().warning(
                 section.place(key), "expression-kink",
                 section.label() + " may jump or bend where the motion decides: " + kink,
-                {"no element ends there but of lobatto and radau, forwards one after the other, so that the "
-                 "estimated error may miss it as well",
+                {"no element ends there but of lobatto and radau, forwards one after the other, and of "
+                 "lobatto with conditions at both ends, so that the estimated error may miss it as well",
                  "take the family lobatto, or a smooth law such as tanh"});
 }
 

@@ -164,13 +164,19 @@ bool ends_at_bends(const Builder& builder)
 {
     const Section* const method = only_section(builder.run(), "method");
     const Section* const time = only_section(builder.run(), "time");
+    const Section* const start = only_section(builder.run(), "start");
     const Section* const end = only_section(builder.run(), "end");
     const std::string family = method != nullptr ? method->text("family") : "lobatto";
     const bool is_nodal = family == "lobatto" || family == "radau" || family == "auto";
-    // Elements are cut at bends while a motion is followed forwards, one element after the other. What is
-    // solved together has its mesh before the bends are known.
-    const bool is_march = end == nullptr || end->pick<Known>("given") == Known::nothing;
-    return is_nodal && is_march && !(method != nullptr && method->has("window")) &&
+    // Elements are cut at bends while a motion is followed forwards, one element after the other, and in
+    // further tries where conditions at both ends have all of them solved together.
+    const Known at_end = end != nullptr ? end->pick<Known>("given") : Known::nothing;
+    const bool is_between = (at_end != Known::nothing && at_end != Known::state) ||
+                            (end != nullptr && end->has("known")) ||
+                            (start != nullptr && start->has("known")) ||
+                            (time != nullptr && time->has("periodic"));
+    const bool is_window = method != nullptr && method->has("window") && !is_between;
+    return is_nodal && at_end != Known::state && !is_window &&
            !(time != nullptr && time->text("breaks") == "ignore");
 }
 
