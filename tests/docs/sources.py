@@ -35,6 +35,7 @@ TIES = [
     ("not many more than needed («1.5» times), that is", f"{TIME}/accuracy/between_ends.cpp", r"wasteful = ([^;]+);"),
     ("(constant in each known element, at most «2.5» times and at least", f"{TIME}/accuracy/remeshing.cpp", r"most_stretched = ([^,]+),"),
     ("Where elements lose less than $«10^{-4}»$ of the error together", f"{TIME}/accuracy/between_ends.cpp", r"double nothing = ([^;]+);"),
+    ("iteration that is accelerated [Anderson1965], to $«10^{-14}»$ of the time", f"{TIME}/accuracy/settled_bends.cpp", r"double settled = ([^,]+),"),
     ("differences with steps of $«10^{-3}»$ lengths or rad", f"{TIME}/march/end_point.cpp", r"step_of_places = ([^;]+);"),
     ("From $«10^{-8}»$ on this one judges alone at first", f"{TIME}/phases/phases.cpp", r"judged_as_whole = ([^;]+);"),
     ("ends on both sides, until that is less than $«10^{-13}»$ of the element", f"{TIME}/phases/event_end.cpp", r"near_event = ([^,]+),"),

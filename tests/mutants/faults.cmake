@@ -2306,7 +2306,7 @@ livens_mutant(NAME rising_by_slope
 
 # Bends of stated elements between both ends are looked for once, and where they are found is not asked again.
 livens_mutant(NAME stated_bends_are_believed
-              FILE spacetime/accuracy/stated_bends.cpp
+              FILE spacetime/accuracy/settled_bends.cpp
               OLD [[if (moved <= settled || (moved]]
               NEW [[if (moved < 1 || (moved]]
               TESTS_OF reference

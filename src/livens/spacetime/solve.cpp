@@ -21,7 +21,7 @@
 #include "livens/solvers/crew.h"
 #include "livens/solvers/patience.h"
 #include "livens/spacetime/accuracy/accuracy.h"
-#include "livens/spacetime/accuracy/stated_bends.h"
+#include "livens/spacetime/accuracy/settled_bends.h"
 #include "livens/spacetime/ensemble.h"
 #include "livens/spacetime/found.h"
 #include "livens/spacetime/phases/phases.h"

@@ -220,6 +220,43 @@ TEST(UnknownsOfFiles, OneElementOrTwoAreEnough)
     }
 }
 
+/// A relay drives an oscillator against its damping: each half of the cycle is one of a damped oscillator,
+/// so the period is 2 pi / sqrt(1 - 0.1^2) s. Forces jump where the rate turns, at both ends of time and in
+/// the middle, or elsewhere.
+TEST(UnknownsOfFiles, AreFoundWhereForcesJump)
+{
+    const auto text = [](const std::string& known, const std::string& time) {
+        return R"file(format = 1
+[[body]]
+name = "b"
+mass = 1
+inertia = [1, 1, 1]
+[[joint]]
+name = "s"
+type = "prismatic"
+between = ["world", "b"]
+at = [0, 0, 0]
+axis = [1, 0, 0]
+[[load]]
+type = "actuator"
+joint = "s"
+expression = "-s.displacement - 0.2*s.displacement_rate + 0.5*sign(s.displacement_rate)"
+[start]
+coordinates = [{ joint = "s", value = 3, rate = 0.001 }]
+known = )file" + known +
+               "\n[time]\nend = { unknown = 6.2 }\nperiodic = true\n" + time;
+    };
+    const double period = 2 * 3.141592653589793 / std::sqrt(0.99);
+    for (const char* known : {R"({ "s.displacement_rate" = 0 })", R"({ "s.displacement" = 2 })"})
+        for (const char* time : {"elements = 40", "accuracy = 1e-9", "accuracy = 1e-11"}) {
+            const SolvedScenario s = solved(*read(text(known, time)).scenario);
+            ASSERT_TRUE(s.solution.report.converged()) << known << time << s.solution.report.message;
+            const double off = std::abs(s.solution.numbers.values[0] - period);
+            EXPECT_LT(off, 2 * s.solution.numbers.errors[0]) << known << time;
+            EXPECT_LT(off, 1e-7) << known << time;
+        }
+}
+
 /// Gravity, and a motion scaled with the mass: of a point mass and its friction only the ratio shows.
 TEST(UnknownsOfFiles, ThatActAlikeAreNotDetermined)
 {

@@ -16,6 +16,7 @@
 #include "livens/spacetime/accuracy/accuracy.h"
 #include "livens/spacetime/accuracy/reference_solution.h"
 #include "livens/spacetime/accuracy/remeshing.h"
+#include "livens/spacetime/accuracy/settled_bends.h"
 #include "livens/spacetime/accuracy/until_accurate.h"
 #include "livens/spacetime/found.h"
 #include "livens/spacetime/march/step_size_controller.h"
@@ -99,6 +100,10 @@ public:
         }
         Solution solution = solve_mesh(*asked_->model, problem, mesh_, asked_->ends, lobatto_, options_);
         solution.report.evaluations_in_all = solution.report.evaluations;
+        SettledBends settled = settle_bends(asked_, mesh_, lobatto_, options_, std::move(solution));
+        solution = std::move(settled.solution);
+        is_bent_ = !settled.is_settled;
+        bends_ = solution.motion.mesh.bends;
         if (!solution.report.converged()) return solution;
         if (auto found = stated_with(asked_, solution.numbers, options_.initial))
             found_of_ = std::move(found);
@@ -117,7 +122,9 @@ public:
         if (!found_ && !is_seen(solution) && search_on(tries)) return AfterTry::again;
         if (!report.converged()) return AfterTry::accept;
         const double error = error_of(solution);
-        const bool is_off = find_bends(solution.motion) || misses_outputs(solution.motion);
+        // both solutions would miss a bend inside of an element alike
+        const bool is_off = is_bent_ || misses_outputs(solution.motion);
+        stops_ = stops_of(model(), span());
         const bool is_good = has_stops_ && !is_off && error <= span().accuracy;
         const bool is_believed = is_once_good_ || in_vain_ <= far_off * span().accuracy;
         is_once_good_ = is_good;
@@ -191,26 +198,6 @@ private:
     {
         const double error = solution.estimate.empty() ? infinite : solution.estimate.largest;
         return std::isnan(error) ? infinite : std::max(error, of_numbers(solution).largest);
-    }
-
-    /// Whether a law bends elsewhere than elements end, by more than the motion goes in the accuracy. Both
-    /// solutions would miss that alike.
-    bool find_bends(const Motion& motion)
-    {
-        std::vector<double> bends = bends_of(*found_of_, motion, bends_, lobatto_, options_);
-        const auto is_off = [&](double t) {
-            const int e = motion.mesh.element_at(t);
-            return std::min(t - motion.mesh.ends[e], motion.mesh.ends[e + 1] - t) > span().accuracy / rate_;
-        };
-        const bool is_bent = std::ranges::any_of(bends, is_off);
-        stops_ = stops_of(model(), span());
-        std::erase_if(bends, [&](double t) {
-            return std::ranges::any_of(stops_, [&](double stop) { return std::abs(t - stop) <= gap_; });
-        });
-        stops_.insert(stops_.end(), bends.begin(), bends.end());
-        std::ranges::sort(stops_);
-        bends_ = std::move(bends);
-        return is_bent;
     }
 
     /// Whether elements end beside output times, since the time that was found is not the one of the try
@@ -298,7 +285,8 @@ private:
         if (n_in_vain_ >= most_in_vain || !(lost > 0)) return give_up(solution, in_vain(solution));
         if (tries >= most_meshes) return give_up(solution, ", and as many tries before it");
         if (is_degree_free_ && !found_) choose_degree(scales, lost);
-        TimeMesh mesh = mesh_of(scales, lost);
+        TimeMesh mesh = is_bent_ ? halved(solution.motion.mesh) : mesh_of(scales, lost);
+        mesh.bends = bends_;
         if (mesh.n_elements() * bytes_ > options_.most_bytes)
             return give_up(solution, "; the " + std::to_string(mesh.n_elements()) +
                                          " of the next one take more memory than they may");
@@ -330,7 +318,10 @@ private:
 
     TimeMesh mesh_of(const ElementScales& scales, double lost) const
     {
-        return {scales.ends(lobatto_.degree, lost, stops_), {stops_.begin() + 1, stops_.end() - 1}};
+        std::vector<double> stops = stops_;
+        stops.insert(stops.end(), bends_.begin(), bends_.end());
+        std::ranges::sort(stops);
+        return {scales.ends(lobatto_.degree, lost, stops), {stops_.begin() + 1, stops_.end() - 1}, bends_};
     }
 
     /// What elements of the next try shall lose together. 0: they do not lose what is missing.
@@ -374,7 +365,8 @@ private:
         return text;
     }
 
-    std::vector<double> stops_, bends_;   // where elements of the next try end; of these, where laws bend
+    std::vector<double> stops_, bends_;   // where elements of the next try end, and where they do for laws
+    bool is_bent_ = false;                // a law bends inside of elements
     int n_first_ = 0;
     double bytes_ = 0;         // an element
     double gap_;               // instants that are closer are one

@@ -95,8 +95,15 @@ bool ReferenceSolution::advance(int end, std::optional<double> jump)
     if (!std::isnan(differs_from_)) return false;
     numbers_ = std::move(second.numbers.values);
     // with unknown instants it has some of its own: elements are compared, not times
-    if (!problem_.unknowns.is_empty() && second.motion.mesh.ends.size() == mesh.ends.size())
-        second.motion.mesh.ends = mesh.ends;
+    if (!problem_.unknowns.is_empty() && second.motion.mesh.ends.size() == mesh.ends.size()) {
+        const TimeMesh own = second.motion.mesh;
+        const double stretched = (mesh.end() - mesh.start()) / (own.end() - own.start());
+        for (std::size_t e = 0; e < mesh.ends.size(); ++e) {
+            const bool bends = std::ranges::binary_search(own.bends, own.ends[e]);
+            second.motion.mesh.ends[e] =
+                bends ? mesh.start() + stretched * (own.ends[e] - own.start()) : mesh.ends[e];
+        }
+    }
     meter_.compare(second.motion, first, last);
     if (!is_backwards_) meter_.add(second.unseen, first, last);
     (is_backwards_ ? problem_.conditions.end : problem_.conditions.start) =

@@ -61,10 +61,13 @@ std::vector<double> ElementScales::lengths(int degree, double error) const
         const double known = mesh_.length(static_cast<int>(e));
         lengths[e] = std::clamp(share * scales_[e], most_shrunk * known, most_stretched * known);
     }
-    for (std::size_t e = 1; e < lengths.size(); ++e)
-        lengths[e] = std::min(lengths[e], grading * lengths[e - 1]);
-    for (std::size_t e = lengths.size() - 1; e-- > 0;)
-        lengths[e] = std::min(lengths[e], grading * lengths[e + 1]);
+    // Between two bends there may be a piece of any length: those beside it are not as short all along.
+    const auto grade = [&](std::size_t e, std::size_t beside) {
+        const double shortest = most_shrunk * mesh_.length(static_cast<int>(e));
+        lengths[e] = std::min(lengths[e], std::max(grading * lengths[beside], shortest));
+    };
+    for (std::size_t e = 1; e < lengths.size(); ++e) grade(e, e - 1);
+    for (std::size_t e = lengths.size() - 1; e-- > 0;) grade(e, e + 1);
     for (std::size_t e = 0; e < lengths.size(); ++e)
         if (unseen_[e] > error)
             lengths[e] = std::min(lengths[e], mesh_.length(static_cast<int>(e)) *

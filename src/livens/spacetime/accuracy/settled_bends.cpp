@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "livens/spacetime/accuracy/stated_bends.h"
+#include "livens/spacetime/accuracy/settled_bends.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +14,7 @@
 #include "livens/spacetime/accuracy/remeshing.h"
 #include "livens/spacetime/accuracy/until_accurate.h"
 #include "livens/spacetime/found.h"
+#include "livens/spacetime/march/numbered.h"
 #include "livens/spacetime/nodal/kernel/acceleration.h"
 #include "livens/spacetime/solve_mesh.h"
 
@@ -24,11 +25,11 @@ namespace {
 constexpr int most_solved = 16;   // times
 // Of the duration: bends this near to element ends are there, or are if another try brings them no nearer.
 constexpr double settled = 1e-14, no_nearer = 1e-9;
-constexpr double nearer = 0.25;        // times as far as at the try before
-constexpr double farthest = 10;        // times the way to the bends, of a step
-constexpr int most_halved = 2;         // times, of elements on which the motion is not found
-constexpr int most_bends_each = 4;     // of a stated element: beyond, a motion slides or hops
-constexpr double thinnest = 1e-6;   // of an element: a stated end nearer to a bend gives way to it
+constexpr double nearer = 0.25;      // times as far as at the try before
+constexpr double farthest = 10;      // times the way to the bends, of a step
+constexpr int most_halved = 2;       // times, of elements on which the motion is not found
+constexpr int most_bends_each = 4;   // of a stated element: beyond, a motion slides or hops
+constexpr double thinnest = 1e-6;    // of an element: a stated end nearer to a bend gives way to it
 
 /// How far any of them is from the other one; infinite where they are not as many.
 double apart(const std::vector<double>& a, const std::vector<double>& b)
@@ -36,6 +37,11 @@ double apart(const std::vector<double>& a, const std::vector<double>& b)
     double most = a.size() == b.size() ? 0 : infinite;
     for (std::size_t i = 0; i < a.size() && i < b.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
     return most;
+}
+
+double nearest_end(const TimeMesh& mesh, double t)
+{
+    return *std::ranges::min_element(mesh.ends, {}, [t](double end) { return std::abs(end - t); });
 }
 
 /// What was stated, in the time of the motion, with these instants.
@@ -84,36 +90,33 @@ private:
     std::size_t n_ = 0;
 };
 
-class StatedBends {
+class SettlingEnds {
 public:
-    StatedBends(Stated stated, const Lobatto& lobatto, const SolveOptions& options, Solution first)
-        : of_(std::make_shared<const Stated>(std::move(stated))), lobatto_(lobatto), options_(options),
-          found_(std::move(first)), notes_(found_.report.notes)
-    {}
-
-    Solution settle()
+    SettlingEnds(const std::shared_ptr<const Stated>& stated, const TimeMesh& mesh, const Lobatto& lobatto,
+             const SolveOptions& options, Solution first)
+        : of_(stated), lobatto_(lobatto), options_(options), notes_(first.report.notes)
     {
-        for (int n = 1; n < most_solved; ++n) {
-            const Look look = look_along();
-            if (look == Look::settled) return take();
-            if (look == Look::lost || !solve_again()) break;
+        become(mesh, std::move(first));
+    }
+
+    SettledBends run()
+    {
+        Look look = Look::moved;
+        for (int n = 1; n < most_solved && look == Look::moved; ++n) {
+            look = look_along();
+            if (look == Look::moved && !solve_again()) look = Look::lost;
         }
-        if (moved_ <= no_nearer) return take();
-        if (found_.report.status == SolveStatus::cancelled) return take();
-        SolveReport& report = found_.report;
-        report.status = SolveStatus::suspect;
-        report.failed_at = next_.empty() ? found_.motion.start() : next_.front();
-        report.message =
-            "a law of a load bends or jumps inside of elements, near t = " + to_text(report.failed_at, 6) +
-            " s, and elements that end there do not settle; try: more elements, or an accuracy "
-            "instead of them";
-        return take();
+        const bool is_settled = look == Look::settled || moved_ <= no_nearer;
+        const double near = next_.empty() ? found_.motion.start() : next_.front();
+        found_.report.notes = std::move(notes_);
+        found_.report.evaluations_in_all = evaluations_;
+        return {std::move(found_), is_settled, near, n_halved_};
     }
 
 private:
     enum class Look { settled, moved, lost };
 
-    /// The elements that were stated, without those that bends have made, in the time of what was found.
+    /// The elements without those that bends have made, in the time of what was found.
     TimeMesh stated() const
     {
         TimeMesh mesh = found_.motion.mesh;
@@ -139,8 +142,8 @@ private:
         const double moved = apart(bends, bends_) / duration, before = std::exchange(moved_, moved);
         if (moved <= settled || (moved <= no_nearer && moved > nearer * before)) return Look::settled;
         next_ = next_ends_.after(bends_, bends);
-        return static_cast<int>(next_.size()) > most_bends_each * mesh.n_elements() ? Look::lost
-                                                                                    : Look::moved;
+        const int most = most_bends_each * mesh.n_elements();
+        return static_cast<int>(next_.size()) > most ? Look::lost : Look::moved;
     }
 
     /// False, and what was found stays: the motion is not found on them, nor on shorter ones.
@@ -151,11 +154,12 @@ private:
         problem.is_only_guess = true;
         TimeMesh mesh = stated();
         for (int k = 0;; ++k) {
-            Solution next = solve_mesh(*of_now_->model, problem, ending_at(mesh, next_), of_now_->ends,
-                                       lobatto_, options_);
+            const TimeMesh divided = ending_at(mesh, next_);
+            Solution next = solve_mesh(*of_now_->model, problem, divided, of_now_->ends, lobatto_, options_);
             if (next.report.converged()) {
                 n_halved_ += k;
-                become(std::move(next));
+                of_ = of_now_;
+                become(divided, std::move(next));
                 return true;
             }
             if (next.report.status == SolveStatus::cancelled) {
@@ -168,24 +172,17 @@ private:
         }
     }
 
-    void become(Solution next)
+    /// With unknown instants what was found has a time of its own.
+    void become(const TimeMesh& mesh, Solution next)
     {
         for (const std::string& note : next.report.notes)
             if (std::ranges::find(notes_, note) == notes_.end()) notes_.push_back(note);
         found_ = std::move(next);
-        of_ = of_now_;
-        bends_ = next_;
-    }
-
-    Solution take()
-    {
-        if (!bends_.empty())
-            notes_.push_back("elements end at " + std::to_string(bends_.size()) +
-                             (bends_.size() == 1 ? " instant" : " instants") +
-                             " where a law of a load bends or jumps" +
-                             (n_halved_ > 0 ? "; for these all were halved" : ""));
-        found_.report.notes = std::move(notes_);
-        return std::move(found_);
+        evaluations_ += found_.report.evaluations;
+        bends_.clear();
+        for (const double t : mesh.bends)
+            bends_.push_back(nearest_end(found_.motion.mesh, carried_to(mesh, t, found_.motion.mesh)));
+        found_.motion.mesh.bends = bends_;
     }
 
     std::shared_ptr<const Stated> of_, of_now_;
@@ -197,22 +194,46 @@ private:
     std::vector<double> bends_, next_;   // where elements of what was found end, and of the next
     double moved_ = infinite;            // of the duration, by the last try
     int n_halved_ = 0;
+    long long evaluations_ = 0;
 };
 
+void tell(const SettledBends& settled, SolveReport& report)
+{
+    if (const std::size_t n = settled.solution.motion.mesh.bends.size(); n > 0)
+        report.notes.push_back("elements end at " + std::to_string(n) + (n == 1 ? " instant" : " instants") +
+                               " where a law of a load bends or jumps" +
+                               (settled.n_halved > 0 ? "; for these all were halved" : ""));
+    if (settled.is_settled || !report.converged()) return;
+    report.status = SolveStatus::suspect;
+    report.failed_at = settled.near;
+    report.message =
+        "a law of a load bends or jumps inside of elements, near t = " + to_text(settled.near, 6) +
+        " s, and elements that end there do not settle; try: more elements, or an accuracy "
+        "instead of them";
+}
+
 }   // namespace
+
+SettledBends settle_bends(const std::shared_ptr<const Stated>& stated, const TimeMesh& mesh,
+                          const Lobatto& lobatto, const SolveOptions& options, Solution first)
+{
+    if (!options.end_at_bends || !stated->model->has_pieces() || !first.report.converged())
+        return {std::move(first)};
+    return SettlingEnds(stated, mesh, lobatto, options, std::move(first)).run();
+}
 
 Solution solve_with_bends(const Model& model, const Problem& problem, const TimeMesh& mesh, const Ends& ends,
                           const Method& method, const SolveOptions& options)
 {
     Solution first = solve_mesh(model, problem, mesh, ends, method, options);
     const auto* lobatto = std::get_if<Lobatto>(&method);
-    const bool is_second = problem.near != nullptr;   // it has the elements of the first
-    if (lobatto == nullptr || is_second || !options.end_at_bends || !model.has_pieces() ||
-        !first.report.converged())
-        return first;
+    if (lobatto == nullptr) return first;
     const std::shared_ptr<const Model> own(std::shared_ptr<const Model>(), &model);
-    return StatedBends({own, problem, ends, {mesh.start(), mesh.end()}}, *lobatto, options, std::move(first))
-        .settle();
+    const Span span{mesh.start(), mesh.end()};
+    SettledBends found = settle_bends(std::make_shared<const Stated>(Stated{own, problem, ends, span}), mesh,
+                                      *lobatto, options, std::move(first));
+    tell(found, found.solution.report);
+    return std::move(found.solution);
 }
 
 }   // namespace livens::inline spacetime_internal
