@@ -2319,3 +2319,11 @@ livens_mutant(NAME jumps_by_reactions_are_slopes
               NEW [[return false;]]
               TESTS_OF unit_io
               MUST_FAIL ReactionLaws.ThatJumpWhereTheMotionBeginsAreNoDampers)
+
+# The second solution has the bends of the first, whose errors both have.
+livens_mutant(NAME bends_of_the_first_alone
+              FILE spacetime/accuracy/settled_bends.cpp
+              OLD [[if (lobatto == nullptr) return first;]]
+              NEW [[if (lobatto == nullptr || problem.near != nullptr) return first;]]
+              TESTS_OF unit_io
+              MUST_FAIL UnknownsOfFiles.AreFoundWhereForcesJump)
