@@ -286,7 +286,6 @@ private:
         if (tries >= most_meshes) return give_up(solution, ", and as many tries before it");
         if (is_degree_free_ && !found_) choose_degree(scales, lost);
         TimeMesh mesh = is_bent_ ? halved(solution.motion.mesh) : mesh_of(scales, lost);
-        mesh.bends = bends_;
         if (mesh.n_elements() * bytes_ > options_.most_bytes)
             return give_up(solution, "; the " + std::to_string(mesh.n_elements()) +
                                          " of the next one take more memory than they may");
@@ -308,7 +307,7 @@ private:
     AfterTry go_on(TimeMesh mesh, Solution& solution)
     {
         mesh_ = std::move(mesh);
-        has_stops_ = true;
+        has_stops_ = has_stops_ || !is_bent_;   // else they are those of the try before, in halves
         Stated next = *found_of_;
         next.problem.unknowns.held = held_outputs(next, error_of(solution));
         asked_ = std::make_shared<const Stated>(std::move(next));

@@ -105,7 +105,7 @@ std::vector<double> ElementScales::ends(int degree, double error, std::span<cons
 
 TimeMesh halved(const TimeMesh& mesh)
 {
-    TimeMesh fine{{mesh.start()}, mesh.required};
+    TimeMesh fine{{mesh.start()}, mesh.required, mesh.bends};
     for (int e = 0; e < mesh.n_elements(); ++e) {
         fine.ends.push_back(mesh.ends[e] + 0.5 * mesh.length(e));
         fine.ends.push_back(mesh.ends[e + 1]);

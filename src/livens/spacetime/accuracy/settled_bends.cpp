@@ -93,7 +93,7 @@ private:
 class SettlingEnds {
 public:
     SettlingEnds(const std::shared_ptr<const Stated>& stated, const TimeMesh& mesh, const Lobatto& lobatto,
-             const SolveOptions& options, Solution first)
+                 const SolveOptions& options, Solution first)
         : of_(stated), lobatto_(lobatto), options_(options), notes_(first.report.notes)
     {
         become(mesh, std::move(first));
@@ -177,6 +177,10 @@ private:
     {
         for (const std::string& note : next.report.notes)
             if (std::ranges::find(notes_, note) == notes_.end()) notes_.push_back(note);
+        if (found_.motion.n_elements() > 0) {   // it is the first one whose guess was another motion
+            next.report.guess_distance = found_.report.guess_distance;
+            next.report.guess_distance_time = found_.report.guess_distance_time;
+        }
         found_ = std::move(next);
         evaluations_ += found_.report.evaluations;
         bends_.clear();
