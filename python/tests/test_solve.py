@@ -412,7 +412,7 @@ def test_threads_share_the_work() -> None:
 
     def cpu(threads: int) -> tuple[float, float]:
         own, all_of_them = time.thread_time(), time.process_time()
-        lv.solve_many(m, 1, elements=40, variations=variations, threads=threads, estimate="none")
+        lv.solve_many(m, 1, elements=160, variations=variations, threads=threads, estimate="none")
         return time.thread_time() - own, time.process_time() - all_of_them
 
     cpu(2)
